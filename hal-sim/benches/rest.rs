@@ -19,6 +19,8 @@ const UNITS_PER_LSB: f64 = 64.0;
 /// A machine, and what the encoders are.
 #[derive(Clone, Copy)]
 struct Case {
+    /// Without most of what a workshop leaves in a machine.
+    is_kind: bool,
     mismatch_percent: f64,
     payload_kg: f64,
     backlash_urad: f64,
@@ -64,12 +66,24 @@ fn cases() -> Vec<Case> {
         for payload_kg in [0.0, 5.0] {
             for mismatch_percent in [0.0, 10.0, -10.0, 20.0, -20.0, 30.0, -30.0] {
                 cases.push(Case {
+                    is_kind: true,
                     mismatch_percent,
                     payload_kg,
                     backlash_urad,
                     noise_nrad,
                 });
             }
+        }
+    }
+    for noise_nrad in [30.0, 200.0] {
+        for payload_kg in [0.0, 5.0] {
+            cases.push(Case {
+                is_kind: false,
+                mismatch_percent: 0.0,
+                payload_kg,
+                backlash_urad: 0.3,
+                noise_nrad,
+            });
         }
     }
     if let Ok(only) = std::env::var("ONLY") {
@@ -87,8 +101,12 @@ fn row(case: &Case, quiet: &Quiet) -> String {
         )
     };
     format!(
-        "| {} % off | {} | {} | {} | {} | {} | {:.2} / {:.1} | {:.3} | {:.2} |",
-        case.mismatch_percent,
+        "| {} | {} | {} | {} | {} | {} | {:.2} / {:.1} | {:.3} | {:.2} |",
+        if case.is_kind {
+            format!("kind, {} % off", case.mismatch_percent)
+        } else {
+            "reference stage".to_owned()
+        },
         case.payload_kg,
         case.backlash_urad,
         case.noise_nrad,
@@ -128,7 +146,11 @@ fn stage(case: &Case) -> (StageParameters, Parameters) {
     let options = RunOptions {
         mismatch_percent: case.mismatch_percent,
         payload_kg: case.payload_kg,
-        ..RunOptions::default()
+        ..if case.is_kind {
+            RunOptions::default()
+        } else {
+            RunOptions::reference()
+        }
     };
     let mut stage = stage_parameters(&options);
     stage.plant.backlash_rad = case.backlash_urad * 1e-6;

@@ -24,14 +24,18 @@ const REST: u64 = 10_000;
 /// A machine so far off the reference, and what the controller knows of it.
 #[derive(Clone, Copy)]
 struct Case {
+    /// Without most of what a workshop leaves in a machine.
+    is_kind: bool,
     mismatch_percent: f64,
     payload_kg: f64,
     told: Told,
 }
 
-const CASES: [Case; 12] = {
-    use Told::{Machine, MachineAndRipple, Nothing};
+const CASES: [Case; 14] = {
+    use Told::{Everything, Machine, MachineAndRipple, Nothing, Reference};
     [
+        Case::unkind(0.0, Reference),
+        Case::unkind(5.0, Everything),
         Case::new(0.0, 0.0, Nothing),
         Case::new(20.0, 0.0, Nothing),
         Case::new(0.0, 0.0, Machine),
@@ -50,28 +54,41 @@ const CASES: [Case; 12] = {
 impl Case {
     const fn new(mismatch_percent: f64, payload_kg: f64, told: Told) -> Self {
         Self {
+            is_kind: true,
             mismatch_percent,
             payload_kg,
             told,
         }
     }
 
+    const fn unkind(payload_kg: f64, told: Told) -> Self {
+        Self {
+            is_kind: false,
+            ..Self::new(0.0, payload_kg, told)
+        }
+    }
+
     fn words(&self) -> String {
-        format!(
-            "{} % off | {} | {}",
-            self.mismatch_percent, self.payload_kg, self.told
-        )
+        let machine = if self.is_kind {
+            format!("kind, {} % off", self.mismatch_percent)
+        } else {
+            "reference stage".to_owned()
+        };
+        format!("{machine} | {} | {}", self.payload_kg, self.told)
     }
 
     fn stage_and_controller(&self) -> (StageParameters, Parameters) {
         let options = RunOptions {
             mismatch_percent: self.mismatch_percent,
             payload_kg: self.payload_kg,
-            ..RunOptions::default()
+            told: self.told,
+            ..if self.is_kind {
+                RunOptions::default()
+            } else {
+                RunOptions::reference()
+            }
         };
-        let stage = stage_parameters(&options);
-        let told = (self.told).parameters(&controller_parameters(&options), &stage);
-        (stage, told)
+        (stage_parameters(&options), controller_parameters(&options))
     }
 }
 

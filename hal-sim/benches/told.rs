@@ -6,7 +6,9 @@
 
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
-use hal_sim::rig::run::{RunOptions, controller_parameters, run_machine, stage_parameters};
+use hal_sim::rig::run::{
+    RunOptions, RunOutcome, controller_parameters, run, run_machine, stage_parameters,
+};
 use hal_sim::rig::script::Script;
 use hal_sim::rig::{Told, with_gains_firmer};
 
@@ -45,8 +47,25 @@ fn main() {
                 words += ", firmer gains";
             }
             let figures = demonstration(&parameters, &stage, &options);
-            println!("| {mismatch_percent} % off | {payload_kg} | {words} | {figures} |");
+            println!("| kind, {mismatch_percent} % off | {payload_kg} | {words} | {figures} |");
         }
+    }
+    for (payload_kg, told) in [
+        (0.0, Told::Nothing),
+        (0.0, Told::Machine),
+        (0.0, Told::Reference),
+        (0.0, Told::Everything),
+        (5.0, Told::Reference),
+        (5.0, Told::Everything),
+    ] {
+        let options = RunOptions {
+            payload_kg,
+            told,
+            ..RunOptions::reference()
+        };
+        let script = Script::demonstration().expect("it is a script");
+        let figures = figures(run(&script, &options));
+        println!("| reference stage | {payload_kg} | {told} | {figures} |");
     }
 }
 
@@ -59,6 +78,10 @@ fn demonstration(parameters: &Parameters, stage: &StageParameters, options: &Run
         options,
         SettingsFlash::in_memory(),
     );
+    figures(outcome)
+}
+
+fn figures(outcome: RunOutcome) -> String {
     if let Some(fault) = outcome.fault {
         return format!("{fault} |");
     }

@@ -43,6 +43,7 @@ fn main() {
         (20.0, 0.0, Told::MachineAndRipple),
         (-20.0, 0.0, Told::MachineAndRipple),
         (35.0, 5.0, Told::MachineAndRipple),
+        (0.0, 0.0, Told::Reference),
     ];
     let only = std::env::var("ONLY").map(|only| only.parse::<usize>().expect("a row's number"));
     let cases = match only {
@@ -61,10 +62,17 @@ fn row((mismatch_percent, payload_kg, told): (f64, f64, Told)) -> String {
     let options = RunOptions {
         mismatch_percent,
         payload_kg,
-        ..RunOptions::default()
+        told,
+        ..match told {
+            Told::Reference => RunOptions::reference(),
+            _ => RunOptions::default(),
+        }
     };
-    let stage = stage_parameters(&options);
-    let parameters = told.parameters(&controller_parameters(&options), &stage);
+    let (stage, parameters) = (stage_parameters(&options), controller_parameters(&options));
+    let machine = match told {
+        Told::Reference => "reference stage".to_owned(),
+        _ => format!("kind, {mismatch_percent} % off"),
+    };
     let mut bench = Bench::told(&stage, &parameters);
     assert_eq!(bench.error_after("FRF"), "0");
     bench.settle();
@@ -81,7 +89,7 @@ fn row((mismatch_percent, payload_kg, told): (f64, f64, Told)) -> String {
     let last = sorted(moves.iter().map(|repeats| repeats.with[TRIALS - 1]));
     let good = last.iter().filter(|error| **error <= 1.0).count();
     format!(
-        "| {mismatch_percent} % off | {payload_kg} | {told} | {} | {} | {:.0} % | {:.2} | {:.2} |",
+        "| {machine} | {payload_kg} | {told} | {} | {} | {:.0} % | {:.2} | {:.2} |",
         spread(&first),
         spread(&last),
         good as f64 / MOVES as f64 * 100.0,

@@ -1,8 +1,5 @@
 //! `hal-sim/MEASURED.md` is what its command would write, and what it says of quick deterministic runs is so.
 
-use hal_sim::machine::devices::StageParameters;
-use hal_sim::machine::plant::Imperfections;
-use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, run};
 use hal_sim::rig::script::Script;
 use std::collections::BTreeSet;
@@ -63,16 +60,7 @@ fn is_as_the_page_says(name: &str, options: &RunOptions) {
 
 #[test]
 fn the_demonstration_is_as_the_page_says() {
-    let mut machine = StageParameters::REFERENCE;
-    machine.plant.imperfections = Imperfections::ALL;
-    let options = RunOptions {
-        machine,
-        imperfections: Imperfections::ALL,
-        mismatch_percent: 0.0,
-        told: Told::Reference,
-        ..RunOptions::default()
-    };
-    is_as_the_page_says("demonstration", &options);
+    is_as_the_page_says("demonstration", &RunOptions::reference());
 }
 
 #[test]

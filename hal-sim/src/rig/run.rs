@@ -64,6 +64,22 @@ impl Default for RunOptions {
     }
 }
 
+impl RunOptions {
+    /// The reference stage as a workshop builds it, under a controller that is told what there is to know of it.
+    #[must_use]
+    pub fn reference() -> Self {
+        let mut machine = StageParameters::REFERENCE;
+        machine.plant.imperfections = Imperfections::ALL;
+        Self {
+            machine,
+            imperfections: Imperfections::ALL,
+            mismatch_percent: 0.0,
+            told: Told::Reference,
+            ..Self::default()
+        }
+    }
+}
+
 /// A run that came to its end, one way or another.
 #[derive(Debug)]
 pub struct RunOutcome {

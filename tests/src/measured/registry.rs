@@ -187,6 +187,18 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "unknown-told",
+        title: "The demonstration on machines as workshops build them",
+        group: Group::Motion,
+        about: "Machines drawn at random ([PLANT.md](PLANT.md#a-machine-of-ones-own)), whose controllers are told all that is true of them: wiring, zeros, \
+                masses, friction, stiffness, errors, and gains that a search finds with the loops' mathematics. True pose against commanded pose.",
+        command: "SEEDS=50 cargo bench -p hal-sim --bench unknown_told",
+        short: Some("cargo bench -p hal-sim --bench unknown_told"),
+        kind: Kind::Deterministic,
+        seconds: 300,
+        without: &[],
+    },
+    Section {
         name: "sensitivity",
         title: "What each imperfection decides",
         group: Group::Motion,
