@@ -7,7 +7,7 @@ use firmware::parameters::Parameters;
 use super::injection::{HEARTBEAT_MS, Injection};
 use super::motion::{FIRST_MOTION, MOTION_TICKS, Motion, REFERENCE, place_mm};
 use crate::machine::devices::{StageParameters, WiringParameters};
-use crate::machine::plant::AXES;
+use crate::machine::plant::{AXES, Imperfections};
 use crate::machine::unknown;
 use crate::random::Random;
 use crate::rig::{Told, with_gains_fitted, with_motion_fitted, with_wiring_told};
@@ -110,12 +110,14 @@ fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     }
 }
 
-/// A machine as a workshop builds it, plugged in as it belongs.
+/// A machine as a workshop builds it, with every imperfection, plugged in as it belongs.
 fn machine(drawn: u64, seed: u64) -> StageParameters {
+    let mut machine = unknown(drawn);
+    machine.plant.imperfections = Imperfections::ALL;
     StageParameters {
         wiring: WiringParameters::REFERENCE,
         seed,
-        ..unknown(drawn)
+        ..machine
     }
 }
 

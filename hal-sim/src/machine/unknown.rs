@@ -13,7 +13,7 @@ const OFF: f64 = 0.35;
 const REFERENCE_RESONANCE_HZ: f64 = 1500.0;
 const RESONANCE_HZ: [f64; 2] = [600.0, 2000.0];
 
-/// The machine of a seed, with everything that a machine can have, and wires and zeros as they came.
+/// The machine of a seed, with everything that a machine can have but what commissioning does not know yet, and wires and zeros as they came.
 #[must_use]
 pub fn unknown(seed: u64) -> StageParameters {
     let mut random = Random::new(seed);
@@ -32,7 +32,12 @@ pub fn unknown(seed: u64) -> StageParameters {
     machine.wiring.port_of_ring = order(&mut random);
     machine.wiring.leads_exchanged = [(); AXES].map(|()| random.once_in(2));
     draw_losses(&mut machine, &mut random);
-    machine.plant.imperfections = Imperfections::ALL;
+    machine.plant.imperfections = Imperfections {
+        // Commissioning knows neither yet, and would find windings, motors and friction off by them.
+        current_ripple: false,
+        gear_losses: false,
+        ..Imperfections::ALL
+    };
     machine
 }
 
