@@ -33,9 +33,10 @@ pub fn unknown(seed: u64) -> StageParameters {
     machine.wiring.leads_exchanged = [(); AXES].map(|()| random.once_in(2));
     draw_losses(&mut machine, &mut random);
     machine.plant.imperfections = Imperfections {
-        // Commissioning knows neither yet, and would find windings, motors and friction off by them.
+        // Commissioning knows none of them yet, and would find windings, motors, friction and encoders off by them.
         current_ripple: false,
         gear_losses: false,
+        track_heat: false,
         ..Imperfections::ALL
     };
     machine
