@@ -253,7 +253,9 @@ impl Calibrated {
     fn solve(&self, config: &Config, pose: &Pose<Fixed>) -> Option<CorrectedInverse<Fixed>> {
         let (twist, acceleration) = (Twist::default(), Acceleration::default());
         let (mut at, mut unused) = (None, PivotSetpoints::at_rest([Angle::ZERO; 3]));
-        let at_rest = (&twist, &acceleration, &[0.0; 3]);
+        // On the stack: a constant would be read from flash.
+        let friction = [0.0_f32; 3];
+        let at_rest = (&twist, &acceleration, &friction);
         let _ = self.pivot_setpoints(config, pose, at_rest, &mut unused, Some(&mut at));
         at
     }

@@ -187,7 +187,7 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
         kind: FaultKind::SupplyRises,
         detection: "the supply, for 0.3 ms, 0.75 V higher than 1 ms after the brake resistor was switched on (at 54 V), which it still is; every tick, in every state. It takes more than three motors give, so that the supply falls where it works",
         thresholds: &[],
-        reason: "resistor or switch is open, or something drives the stage that gives back more than it takes: shorted windings give nothing back, and the bus stays under 58 V. Told again until it has fallen",
+        reason: "resistor or switch is open, or something drives the stage that gives back more than it takes: shorted windings give nothing back: after a stop of its own the bus stays under 58 V. Told again until it has fallen",
     },
     FaultDescription {
         kind: FaultKind::BrakeResistorDead,

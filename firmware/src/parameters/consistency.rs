@@ -22,7 +22,7 @@ const COUNT_RAD: f64 = core::f64::consts::TAU / 67_108_864.0;
 
 impl Parameters {
     /// Whether they make a stage that can be controlled: that the disk is not empty, that the tick's numbers hold every
-    /// rate, that no threshold contradicts another, that encoders are not corrected beyond reason, that no connector is two pivots', and that a record has a point from its trigger on. Says nothing of
+    /// rate, that no threshold contradicts another, that encoders are not corrected beyond reason, that a tick has time for all sines, that no connector is two pivots', and that a record has a point from its trigger on. Says nothing of
     /// each parameter's own range.
     pub fn are_sound(&self) -> bool {
         self.has_disk()
@@ -30,6 +30,7 @@ impl Parameters {
             && self.thresholds_agree()
             && self.connectors_differ()
             && self.readings_rise()
+            && self.sines_fit()
             && self.recorder.before < self.recorder.points
     }
 
@@ -76,6 +77,15 @@ impl Parameters {
                 })
                 .sum();
             slope < MAX_SUBDIVISION_SLOPE
+        })
+    }
+
+    /// A tick has time for four sines of ripple, or for three and the gear's error.
+    fn sines_fit(&self) -> bool {
+        let servo = &self.servo;
+        (servo.ripple.iter().zip(&servo.gear_errors)).all(|(ripple, gear)| {
+            gear.amplitude_urad == 0.0
+                || (ripple.harmonics.iter()).any(|sine| sine.amplitude_n_m == 0.0)
         })
     }
 

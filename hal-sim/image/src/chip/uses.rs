@@ -46,8 +46,8 @@ pub enum Use {
     SwitchedOnCalibrated,
     /// With the calibration and all that shapes a loop, as below, it takes settings.
     SettingsTakenShaped,
-    /// It moves with it, and all is on that shapes a loop or learns: of each pivot two notches, the lead, four sines of ripple and three of
-    /// the encoder's error within a period, and gains that go by the inertia.
+    /// It moves with it, and all is on that shapes a loop or learns: of each pivot two notches, the lead, three sines of ripple and the
+    /// gear's error, friction and give of the guides, three sines of the encoder's error within a period, and gains that go by the inertia.
     MovingShaped,
     /// It takes a plan then.
     PlanTakenShaped,
@@ -160,7 +160,7 @@ struct Stretch {
 const ORDER_TICKS: u64 = 40;
 
 /// Lines, and the tick before which they are sent.
-const LINES: [(u64, &[u8]); 25] = [
+const LINES: [(u64, &[u8]); 26] = [
     (150, b"FRF X\n"),
     (1_000, b"MOV X 40 Y 20 W 90\n"),
     (4_000, b"MOV X -30 Y 35 W -90\n"),
@@ -188,6 +188,10 @@ const LINES: [(u64, &[u8]); 25] = [
     (42_800, b"SPA 1 0x54500E03 9 1 0x54500E05 9\n"),
     (42_900, b"FRF X\n"),
     (
+        43_500,
+        b"SPA 1 0x54500706 0.1 1 0x54500708 20 1 0x54500709 500\n",
+    ),
+    (
         43_600,
         b"SPA 1 0x54500340 1425 1 0x54500341 450 1 0x54500342 0.3\n",
     ),
@@ -205,7 +209,7 @@ const LINES: [(u64, &[u8]); 25] = [
     ),
     (
         SETTINGS_TAKEN,
-        b"SPA 1 0x54500A06 50 1 0x54500A07 1e-3 1 0x54500A09 100 1 0x54500A0A 1e-3\nERR?\n",
+        b"SPA 1 0x54500A06 50 1 0x54500A07 1e-3 1 0x54500A0C 2 1 0x54500A0D 30\nERR?\n",
     ),
     (SHAPED, b"MOV X 10 Y 40 W 0\n"),
     (REPEATED, b"ILC LEARN A\nMOV X 40 Y 20 W 90\nERR?\n"),
