@@ -10,17 +10,15 @@
 //! `x + m x'' / k` moves by x: it does not ring either.
 
 use super::config::Config;
-use super::inspection::INSPECTION_PERIOD_TICKS;
+use super::inspection::LOOK_TICKS;
 use super::pivot_setpoints::PivotSetpoints;
 use super::servo::Presliding;
 use super::units::UNITS_PER_RAD;
-use crate::number;
 use crate::parameters::Parameters;
 use kinematics::Angle;
 
-/// Of what pivots lead, from one tick to the next: its rate steps where the jerk does, and the push for that is spread over 0.4 ms. What it lags
-/// behind for that is some nanometres.
-const SMOOTHING: f32 = 0.25;
+/// Binary places of what a pivot leads, below 2^-32 turns: 2^15 of those are 48 urad, more than a guide gives way.
+const LEAD_PLACES: u32 = 16;
 
 /// Constants of the guides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,7 +38,7 @@ impl GuideConfig {
     pub fn new(parameters: &Parameters) -> Self {
         let guides = &parameters.guides;
         let radius_m = parameters.geometry.radius_mm * 1e-3;
-        let look_s = f64::from(INSPECTION_PERIOD_TICKS) / parameters.limits.rate_hz;
+        let look_s = f64::from(LOOK_TICKS) / parameters.limits.rate_hz;
         let stiffness_n_m = guides.stiffness_n_um * 1e6;
         Self {
             coulomb: (guides.coulomb_n * radius_m) as f32,
@@ -69,11 +67,18 @@ pub(super) struct Guides {
     places: [Option<f32>; 3],
     /// Friction, N m.
     friction: [f32; 3],
-    /// What a pivot leads for each N m across its guide, 2^-32 turns.
-    lead_per_torque: [f32; 3],
-    /// What it leads, 2^-32 turns, and how fast that has changed, rad/s.
-    lead: [f32; 3],
-    lead_rate: [f32; 3],
+    leads: [Lead; 3],
+}
+
+/// What a pivot leads, which goes evenly from one look to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Lead {
+    /// 2^-32 turns, with [`LEAD_PLACES`], and the same a tick.
+    now: i32,
+    step: i32,
+    /// rad/s, and rad/s^2 up to the next look: where the jerk steps the rate does, and the ring has to be pushed.
+    rate: f32,
+    acceleration: f32,
 }
 
 impl Guides {
@@ -83,53 +88,66 @@ impl Guides {
         &self.friction
     }
 
-    /// The next setpoint: its pivots lead by what their guides give way. Friction is looked at for one guide a tick, that of the pivot that has
-    /// its turn: what it is a few ticks later it hardly differs from.
+    /// The next setpoint: its pivots lead by what their guides give way. In a tick at most one guide is looked at, that of `turn`.
     #[inline]
     pub fn lead(&mut self, config: &Config, wanted: &mut PivotSetpoints, turn: usize) {
         if !config.guides.is_ideal() {
-            self.look_at(&config.guides, wanted, turn);
+            self.look_at(config, wanted, turn);
             if config.guides.compliance != 0.0 {
-                self.add_lead(config.limits.rate_hz, wanted);
+                self.add_lead(wanted);
             }
         }
     }
 
     #[inline(never)]
-    fn look_at(&mut self, config: &GuideConfig, wanted: &PivotSetpoints, turn: usize) {
-        let (Some(contact), Some(place), Some(friction), Some(lead_per_torque)) = (
+    fn look_at(&mut self, config: &Config, wanted: &PivotSetpoints, turn: usize) {
+        let (Some(contact), Some(place), Some(friction), Some(lead)) = (
             self.contacts.get_mut(turn),
             self.places.get_mut(turn),
             self.friction.get_mut(turn),
-            self.lead_per_torque.get_mut(turn),
+            self.leads.get_mut(turn),
         ) else {
             return;
         };
-        let (Some(&now), Some(&cosine)) = (wanted.lengths.get(turn), wanted.cosines.get(turn))
-        else {
+        let (Some(&now), Some(&cosine), Some(&across)) = (
+            wanted.lengths.get(turn),
+            wanted.cosines.get(turn),
+            wanted.across.get(turn),
+        ) else {
             return;
         };
+        let guides = &config.guides;
         let way = place.map_or(0.0, |before| now - before);
         *place = Some(now);
-        *friction = config.coulomb * contact.advance(way * config.presliding_lengths)
-            + config.viscous * way;
-        *lead_per_torque = config.compliance / cosine;
+        *friction = guides.coulomb * contact.advance(way * guides.presliding_lengths)
+            + guides.viscous * way;
+        lead.aim_at(guides.compliance * across / cosine, config.limits.rate_hz);
     }
 
     #[inline(never)]
-    fn add_lead(&mut self, rate_hz: f32, wanted: &mut PivotSetpoints) {
-        const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;
+    fn add_lead(&mut self, wanted: &mut PivotSetpoints) {
         for i in 0..3 {
-            let now = self.lead_per_torque[i] * wanted.across[i];
-            let step = SMOOTHING * (now - self.lead[i]);
-            let lead = self.lead[i] + step;
-            let rate = step * (RAD * rate_hz);
-            // Where the jerk steps the rate does: the ring has to be pushed.
-            wanted.motion.accelerations[i] += (rate - self.lead_rate[i]) * rate_hz;
-            wanted.motion.rates[i] += rate;
-            self.lead[i] = lead;
-            self.lead_rate[i] = rate;
-            wanted.angles[i] += Angle::from_units(number::round_ties_even(lead).0.into());
+            let lead = &mut self.leads[i];
+            lead.now = lead.now.wrapping_add(lead.step);
+            wanted.angles[i] += Angle::from_units((lead.now >> LEAD_PLACES).into());
+            wanted.motion.rates[i] += lead.rate;
+            wanted.motion.accelerations[i] += lead.acceleration;
         }
+    }
+}
+
+impl Lead {
+    /// So many 2^-32 turns, at the next look.
+    #[inline]
+    fn aim_at(&mut self, units: f32, rate_hz: f32) {
+        const PLACES: f32 = (1_u32 << LEAD_PLACES) as f32;
+        const LOOK: f32 = LOOK_TICKS as f32;
+        const RAD_A_TICK: f32 = (1.0 / UNITS_PER_RAD) as f32 / PLACES;
+        // What is more than that is as much, and what is no number nothing.
+        let aim = (units * PLACES) as i32;
+        self.step = aim.wrapping_sub(self.now) / LOOK_TICKS as i32;
+        let rate = self.step as f32 * (RAD_A_TICK * rate_hz);
+        self.acceleration = (rate - self.rate) * (rate_hz / LOOK);
+        self.rate = rate;
     }
 }

@@ -6,6 +6,8 @@ use kinematics::Angle;
 
 /// Ticks from one inspection of a pivot to the next.
 pub(super) const INSPECTION_PERIOD_TICKS: u32 = 4;
+/// Ticks from one look at a pivot's guide to the next, and from one look at its gear to the next: the two take turns.
+pub(super) const LOOK_TICKS: u32 = 2 * INSPECTION_PERIOD_TICKS;
 /// The slot in which no pivot is inspected: the currents are, and a snapshot is due.
 pub(super) const SNAPSHOT_SLOT: usize = 3;
 const _: () = assert!(INSPECTION_PERIOD_TICKS as usize == SNAPSHOT_SLOT + 1);

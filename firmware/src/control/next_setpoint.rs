@@ -6,6 +6,7 @@
 //! The servos' feedforward hangs on the setpoint alone, and is computed here too.
 
 use super::config::Config;
+use super::inspection::INSPECTION_PERIOD_TICKS;
 use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints, pose};
 use super::servo::{PivotServo, PivotSetpoint};
 use super::state::State;
@@ -14,6 +15,9 @@ use crate::iterative_learning::TrialTable;
 use crate::mode::Mode;
 use crate::motion::{PlanReceiver, Setpoint};
 use kinematics::Angle;
+
+/// The turn of no pivot.
+const NOBODY: usize = 3;
 
 impl State {
     /// One tick on: the setpoint that the next tick follows, and what a trial adds in it. One that can not be followed is
@@ -84,8 +88,14 @@ impl State {
             }
         }
         if let Some(wanted) = &mut self.next.pivots {
-            self.guides.lead(config, wanted, i);
-            feed_forward(&mut self.servo, config, wanted, i);
+            // A tick has no time for both: guides and gears take turns, round by round.
+            let [guide, gear] = if self.tick as u32 / INSPECTION_PERIOD_TICKS % 2 == 0 {
+                [i, NOBODY]
+            } else {
+                [NOBODY, i]
+            };
+            self.guides.lead(config, wanted, guide);
+            feed_forward(&mut self.servo, config, wanted, gear);
         }
         true
     }

@@ -1,5 +1,6 @@
 //! The control loop: one function of state and inputs.
 
+use super::command::Command;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
@@ -157,12 +158,17 @@ pub fn tick_and_drive<'a>(
         state.told_mode_and_commands = now;
     }
     // Handled where it lies: constants are too long to be moved twice.
+    let mut rests = false;
     if commanded && let Some(command) = queues.commands.peek() {
+        // Constants are long to copy, and a setpoint that rests is what it was.
+        rests = matches!(command, Command::Configure(_)) && state.setpoint_rests();
         state.commands = state.commands.wrapping_add(1);
         state.handle_command(config, command, queues.plans, &pivots);
         let _ = queues.commands.dequeue();
     }
-    state.prepare_next(config, queues.plans, queues.trial);
+    if !rests {
+        state.prepare_next(config, queues.plans, queues.trial);
+    }
 }
 
 // The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can
@@ -251,6 +257,11 @@ impl State {
             }
         }
         Some(duty)
+    }
+
+    /// Whether the next setpoint is the one that is followed now, and known.
+    fn setpoint_rests(&self) -> bool {
+        self.mode == Mode::Holding && !self.motion.is_moving() && self.next.pivots.is_some()
     }
 
     /// A tick in which the bridges wake up: no duty, and nothing is collected, settled or learnt from what no motor could follow.

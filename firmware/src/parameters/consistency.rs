@@ -1,6 +1,6 @@
 //! What has to hold between parameters, each of which is in its own range.
 
-use super::{ConnectorOrder, Parameters, Wiring};
+use super::{ConnectorOrder, HARMONICS, Parameters, Wiring};
 use kinematics::Geometry;
 
 /// Least and most of the track's radius that the usable disk may reach out to: closer to the track the pivots' rates
@@ -80,12 +80,18 @@ impl Parameters {
         })
     }
 
-    /// A tick has time for four sines of ripple, or for three and the gear's error.
+    /// A tick has time for four of each pivot's: sines of ripple, one of which the gear's error takes the place of, and one the guides.
     fn sines_fit(&self) -> bool {
-        let servo = &self.servo;
+        let (servo, guides) = (&self.servo, &self.guides);
+        let has_guides =
+            guides.coulomb_n != 0.0 || guides.viscous_n_s_m != 0.0 || guides.stiffness_n_um != 0.0;
         (servo.ripple.iter().zip(&servo.gear_errors)).all(|(ripple, gear)| {
-            gear.amplitude_urad == 0.0
-                || (ripple.harmonics.iter()).any(|sine| sine.amplitude_n_m == 0.0)
+            let sines = ripple
+                .harmonics
+                .iter()
+                .filter(|sine| sine.amplitude_n_m != 0.0);
+            let others = usize::from(gear.amplitude_urad != 0.0) + usize::from(has_guides);
+            sines.count() + others <= HARMONICS
         })
     }
 

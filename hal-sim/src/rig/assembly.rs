@@ -187,13 +187,21 @@ pub fn with_machine_settings(
     parameters: &Parameters,
     calibration: Option<&MachineCalibration>,
 ) -> SettingsFlash {
+    with_settings_over(parameters, flash, parameters, calibration)
+}
+
+/// The same for a controller that has `own` parameters by itself, as the image has those of the reference: what differs from them is stored.
+#[must_use]
+pub fn with_settings_over(
+    own: &Parameters,
+    flash: SettingsFlash,
+    parameters: &Parameters,
+    calibration: Option<&MachineCalibration>,
+) -> SettingsFlash {
     if !parameters.commissioned || !flash.is_erased() {
         return flash;
     }
-    let mut interpreter = Box::new(Interpreter::new(
-        &parameters.clone().uncommissioned(),
-        IDENTITY,
-    ));
+    let mut interpreter = Box::new(Interpreter::new(&own.clone().uncommissioned(), IDENTITY));
     interpreter.start_with(parameters.clone(), calibration.cloned());
     let mut settings_store = SettingsStore::new(flash);
     // One that does not take them leaves the controller uncommissioned, or its settings damaged: it says so itself.

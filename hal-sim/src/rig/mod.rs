@@ -27,7 +27,7 @@ mod simulated_board;
 mod told;
 
 pub use ::script::{client, script};
-pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
+pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings, with_settings_over};
 pub use calibrated::{built_stage, calibration_told};
 pub use conditions::{machine_name, run_conditions};
 pub use disturbances::Disturbances;

@@ -22,7 +22,8 @@ use hal_sim::machine::instruments::{EncoderErrors, QuasiStatic, commanded, surve
 use hal_sim::random::Random;
 
 /// A machine with errors of its geometry and its encoders alone.
-const BUILT: [&str; 6] = [
+const BUILT: [&str; 7] = [
+    "--kind",
     "--set",
     "plant.imperfections.geometry=true",
     "--set",
@@ -36,7 +37,7 @@ fn on_machine(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 fn truth() -> QuasiStatic {
-    let settings: Vec<String> = (BUILT.iter().skip(1).step_by(2))
+    let settings: Vec<String> = (BUILT.iter().skip(2).step_by(2))
         .map(|setting| (*setting).to_owned())
         .collect();
     let stage: StageParameters = from_text("", &settings).unwrap();

@@ -114,11 +114,7 @@ fn what_drifted_and_what_does_not_hold_is_not_applied() {
     measured(&folder, "own", 3, |_, _, _| ());
     let apply = |name: &str| {
         let (file, table) = (format!("{name}.toml"), format!("{name}.csv"));
-        let arguments = ["apply", &file, "--measured", &table, "--set"];
-        calibrate(
-            &folder,
-            &[&arguments[..], &["plant.imperfections.geometry=false"]].concat(),
-        )
+        calibrate(&folder, &["apply", &file, "--measured", &table, "--kind"])
     };
     let told = fit(&folder, "drifted");
     println!("{told}");

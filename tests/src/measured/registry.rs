@@ -425,10 +425,10 @@ pub const SECTIONS: &[Section] = &[
         name: "chip-ticks",
         title: "Motion from a seed on the chip",
         group: Group::Chip,
-        about: "New targets in motion, jogs, streams, waves, stops, an encoder that breaks, faults acknowledged: chip and host compared at \
+        about: "A kind machine: new targets in motion, jogs, streams, waves, stops, an encoder that breaks, faults acknowledged: chip and host compared at \
                 every tick, and what ticks cost by what they do.",
-        command: "cargo chip --ticks 2000000",
-        short: Some("cargo chip --ticks 100000"),
+        command: "cargo chip --kind --ticks 2000000",
+        short: Some("cargo chip --kind --ticks 100000"),
         kind: Kind::Compiled,
         seconds: 300,
         without: &[],
@@ -437,10 +437,10 @@ pub const SECTIONS: &[Section] = &[
         name: "chip-calibrated",
         title: "Motion from a seed on the chip, calibrated",
         group: Group::Chip,
-        about: "The same of a built machine with its calibration in force: corrected setpoints, and the pose that is followed while the \
+        about: "The same of the reference stage with its calibration and all else in force that it is told: corrected setpoints, and the pose that is followed while the \
                 servo is off.",
-        command: "cargo chip --ticks 1000000 --calibrated",
-        short: Some("cargo chip --ticks 50000 --calibrated"),
+        command: "cargo chip --ticks 1000000",
+        short: Some("cargo chip --ticks 50000"),
         kind: Kind::Compiled,
         seconds: 200,
         without: &[],

@@ -10,9 +10,9 @@
 //! ```
 //!
 //! T is what the gear passes on: an uneven one takes by the ratio by which it gives. Of e''' only what grows with the speed counts.
-//! It is computed when a pivot has its turn, for the middle of the ticks up to its next one: at 10 rad/s a period has 63 turns.
+//! It is computed when a pivot has its turn, for the middle of the ticks up to its next one: at 10 rad/s a period has 31 turns.
 
-use crate::control::inspection::INSPECTION_PERIOD_TICKS;
+use crate::control::inspection::LOOK_TICKS;
 use crate::control::units::UNITS_PER_RAD;
 use crate::number::sin_cos_short;
 use crate::parameters::{Drive, GearError};
@@ -49,7 +49,7 @@ impl GearErrorConfig {
         let constant = drive.torque_constant_n_m_a * n;
         let slope = 1e-6 * error.amplitude_urad * n;
         let volt_per_torque = drive.resistance_ohm / constant;
-        let held_s = 0.5 * f64::from(INSPECTION_PERIOD_TICKS - 1) / rate_hz;
+        let held_s = 0.5 * f64::from(LOOK_TICKS - 1) / rate_hz;
         Self {
             is_there: true,
             ratio: libm::rint(n * f64::from(1_u32 << RATIO_PLACES)) as u32,

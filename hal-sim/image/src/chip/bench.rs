@@ -7,7 +7,7 @@ use super::gaps;
 use super::period::{Period, Reset};
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, Stage};
-use hal_sim::rig::with_machine_settings;
+use hal_sim::rig::{with_machine_settings, with_settings_over};
 use rigless::emulator::{self, Start, Watch};
 use rigless::image::{self, Image};
 use rigless::session::Session;
@@ -181,7 +181,8 @@ impl Bench {
     /// The same on a board whose flash keeps the settings of this machine; nothing, if nobody has commissioned it yet.
     #[must_use]
     pub fn commissioned_as(self, parameters: &Parameters) -> Self {
-        self.with_settings(with_machine_settings(
+        self.with_settings(with_settings_over(
+            &Parameters::REFERENCE,
             SettingsFlash::in_memory(),
             parameters,
             None,

@@ -18,7 +18,7 @@ use hal_sim::rig::client::{Client, Event};
 use hal_sim::rig::observer::Observer;
 use hal_sim::rig::run::{RunOptions, stage_parameters, stuck_text};
 use hal_sim::rig::script::{Script, ScriptError};
-use hal_sim::rig::{Disturbances, Told, machine_name, run_conditions, with_machine_settings};
+use hal_sim::rig::{Disturbances, Told, machine_name, run_conditions, with_settings_over};
 
 /// A run on the chip that came to its end, one way or another.
 #[derive(Debug)]
@@ -129,7 +129,13 @@ pub(super) fn machine_settings(options: &RunOptions) -> SettingsFlash {
     let stage = stage_parameters(options);
     let calibration = options.told.calibration(&stage);
     let flash = SettingsFlash::in_memory();
-    with_machine_settings(flash, &machine_parameters(options), calibration.as_ref())
+    let parameters = machine_parameters(options);
+    with_settings_over(
+        &Parameters::REFERENCE,
+        flash,
+        &parameters,
+        calibration.as_ref(),
+    )
 }
 
 fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipOutcome, ChipError> {

@@ -46,7 +46,7 @@ pub enum Use {
     SwitchedOnCalibrated,
     /// With the calibration and all that shapes a loop, as below, it takes settings.
     SettingsTakenShaped,
-    /// It moves with it, and all is on that shapes a loop or learns: of each pivot two notches, the lead, three sines of ripple and the
+    /// It moves with it, and all is on that shapes a loop or learns: of each pivot two notches, the lead, two sines of ripple and the
     /// gear's error, friction and give of the guides, three sines of the encoder's error within a period, and gains that go by the inertia.
     MovingShaped,
     /// It takes a plan then.
@@ -209,7 +209,7 @@ const LINES: [(u64, &[u8]); 26] = [
     ),
     (
         SETTINGS_TAKEN,
-        b"SPA 1 0x54500A06 50 1 0x54500A07 1e-3 1 0x54500A0C 2 1 0x54500A0D 30\nERR?\n",
+        b"SPA 1 0x54500A0C 2 1 0x54500A0D 30\nERR?\n",
     ),
     (SHAPED, b"MOV X 10 Y 40 W 0\n"),
     (REPEATED, b"ILC LEARN A\nMOV X 40 Y 20 W 90\nERR?\n"),

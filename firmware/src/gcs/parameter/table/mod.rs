@@ -257,7 +257,7 @@ const AFTER_GAINS: &[Parameter] = &[
     PLATFORM.float(0x5450_0703, "inertia of the payload about its own centre", "kg m^2", [0.0, 2.0], at!(platform.payload_inertia_kg_m2)),
     PLATFORM.float(0x5450_0704, "x of the payload's centre on the platform", "mm", [-500.0, 500.0], at!(platform.payload_centre_mm[0])),
     PLATFORM.float(0x5450_0705, "y of the payload's centre on the platform", "mm", [-500.0, 500.0], at!(platform.payload_centre_mm[1])),
-    PLATFORM.float(0x5450_0706, "friction of a carriage on its guide", "N", [0.0, 50.0], at!(guides.coulomb_n)),
+    PLATFORM.float(0x5450_0706, "friction of a carriage on its guide; with one of these three a pivot has one ripple less", "N", [0.0, 50.0], at!(guides.coulomb_n)),
     PLATFORM.float(0x5450_0707, "viscous friction of a carriage", "N s/m", [0.0, 500.0], at!(guides.viscous_n_s_m)),
     PLATFORM.float(0x5450_0708, "presliding of a carriage", "um", [0.1, 1000.0], at!(guides.presliding_um)),
     PLATFORM.float(0x5450_0709, "stiffness across a guide; 0: rigid", "N/um", [0.0, 1000.0], at!(guides.stiffness_n_um)),

@@ -139,7 +139,7 @@ pub(super) const RIPPLE: &[OfPivot] = &[
     of_pivot(RIPPLE_GROUP, 0x5450_0A09, "periods of ripple 4 in a turn of the ring", "", [0.0, 100_000.0], at!(servo.ripple[Ripple] harmonics[3].periods)),
     of_pivot(RIPPLE_GROUP, 0x5450_0A0A, "amplitude of ripple 4, 0 for none", "N m", [0.0, 5.0], at!(servo.ripple[Ripple] harmonics[3].amplitude_n_m)),
     of_pivot(RIPPLE_GROUP, 0x5450_0A0B, "phase of ripple 4 at pivot angle 0, of a sine", "deg", [-360.0, 360.0], at!(servo.ripple[Ripple] harmonics[3].phase_deg)),
-    of_pivot(RIPPLE_GROUP, 0x5450_0A0C, "cyclic error of the gear once a turn of the motor, 0 for none: in place of one of the ripples", "urad", [0.0, 5_000.0], at!(servo.gear_errors[GearError] amplitude_urad)),
+    of_pivot(RIPPLE_GROUP, 0x5450_0A0C, "cyclic error of the gear once a turn of the motor, 0 for none; in place of one of the ripples", "urad", [0.0, 5_000.0], at!(servo.gear_errors[GearError] amplitude_urad)),
     of_pivot(RIPPLE_GROUP, 0x5450_0A0D, "phase of the cyclic error at pivot angle 0, of a sine", "deg", [-360.0, 360.0], at!(servo.gear_errors[GearError] phase_deg)),
 ];
 

@@ -21,14 +21,14 @@ use std::sync::mpsc;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 
-use super::run::ChipError;
+use super::run::{ChipError, machine_parameters};
 use super::{Bench, Divergence, Period, Twin, elf_file};
 use drawing::Progress;
 use hal_sim::machine::devices::{EncoderFault, SettingsFlash, Stage};
 use hal_sim::rig::client::{Client, Event};
 use hal_sim::rig::exercise::{Patience, script};
 use hal_sim::rig::run::{RunOptions, stage_parameters};
-use hal_sim::rig::{built_stage, calibration_told, with_machine_settings};
+use hal_sim::rig::{built_stage, calibration_told, with_settings_over};
 
 /// What to do.
 #[derive(Clone, Debug)]
@@ -101,14 +101,16 @@ pub fn exercise(options: &ExerciseOptions) -> Result<Exercise, ChipError> {
 }
 
 fn run_image(path: &Path, options: &ExerciseOptions) -> Result<Exercise, ChipError> {
-    let parameters = Parameters::REFERENCE;
-    let (mut stage, mut calibration) = (stage_parameters(&options.run), None);
+    let parameters = machine_parameters(&options.run);
+    let mut stage = stage_parameters(&options.run);
+    let mut calibration = options.run.told.calibration(&stage);
     if options.calibrated {
         stage = built_stage(&stage);
         calibration = Some(calibration_told(&stage));
     }
     let settings = || {
-        with_machine_settings(
+        with_settings_over(
+            &Parameters::REFERENCE,
             SettingsFlash::in_memory(),
             &parameters,
             calibration.as_ref(),
