@@ -76,7 +76,7 @@ class Report(WithDriver):
         self.assertEqual(browser.errors(), [])
         self.assertIn("20 moves", browser.text("#span-text"))
         self.assertIn("errors while moving", browser.text("#summary"))
-        self.assertIn("seed 1; mismatch 20 %", browser.text("#conditions"))
+        self.assertIn("seed 1; mismatch 0 %", browser.text("#conditions"))
         self.assertLess(pathlib.Path(ARGUMENTS.report).stat().st_size, 5_000_000)
 
     def test_the_slider_moves_the_mechanism_and_the_cursor_in_the_plots(self):

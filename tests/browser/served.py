@@ -45,10 +45,10 @@ class Process:
 
 
 class Served(Process):
-    """A simulated stage, its GCS port and its page."""
+    """A simulated stage whose settings are the reference's, its GCS port and its page."""
 
     def __init__(self, program, gcs="127.0.0.1:0", page="127.0.0.1:0"):
-        super().__init__(program, "serve", "--listen", gcs, "--web", page)
+        super().__init__(program, "serve", "--kind", "--listen", gcs, "--web", page)
         self.gcs = self.said(r"listening at (\S+)")
         if page == "off":
             return
@@ -60,7 +60,7 @@ class Line(Process):
     """A simulated stage without a page, at a terminal."""
 
     def __init__(self, program):
-        super().__init__(program, "serve", "--listen", "127.0.0.1:0", "--web", "off", "--pty")
+        super().__init__(program, "serve", "--kind", "--listen", "127.0.0.1:0", "--web", "off", "--pty")
         self.said("(listening)")
         self.way = ("--port", self.said(r"terminal at (\S+)"))
 
@@ -69,7 +69,7 @@ class ChipLine(Process):
     """The serial line of the emulated chip."""
 
     def __init__(self, program):
-        super().__init__(program, "chip-serve", "--listen", "127.0.0.1:0")
+        super().__init__(program, "chip-serve", "--kind", "--listen", "127.0.0.1:0")
         self.way = ("--connect", self.said(r"listening at (\S+)"))
 
 

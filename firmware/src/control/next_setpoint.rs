@@ -89,7 +89,7 @@ impl State {
         }
         if let Some(wanted) = &mut self.next.pivots {
             // A tick has no time for both: guides and gears take turns, round by round.
-            let [guide, gear] = if self.tick as u32 / INSPECTION_PERIOD_TICKS % 2 == 0 {
+            let [guide, gear] = if (self.tick as u32 / INSPECTION_PERIOD_TICKS).is_multiple_of(2) {
                 [i, NOBODY]
             } else {
                 [NOBODY, i]
