@@ -17,7 +17,7 @@ const SCRIPT: &str = "FRF\nWAC ONT? X = 1\nMOV X 40 Y -30 W 90\nWAC ONT? X = 1\n
 
 fn main() {
     let script = Script::parse("cost", SCRIPT).expect("a good script");
-    let machines = compared();
+    let machines = compared(true);
     let mut speeds = vec![Vec::new(); machines.len()];
     for _ in 0..ROUNDS {
         for (machine, speeds) in machines.iter().zip(&mut speeds) {

@@ -131,7 +131,7 @@ struct Compared {
 }
 
 fn compare(stage: &StageParameters, parameters: &Parameters, x_m: f64, print: &str) -> Compared {
-    let (chain, electrical) = loop_model(&stage);
+    let (chain, electrical) = loop_model(stage);
     let gains = gains_of(parameters);
     let points = measure(stage, parameters, x_m);
     let (mut off, mut sizes) = (Vec::new(), Vec::new());
