@@ -34,8 +34,8 @@ const LIMITED: f64 = 0.995;
 const NEARLY_LIMITED: f64 = 0.9;
 /// What the heat may be under its threshold for one who sees every fourth sample of the current.
 const NEARLY: f64 = 0.99;
-/// What an encoder may read less than the judge's numbers have, rad: errors within its periods, and 60 ns between two latches.
-const READ_RAD: f64 = 2e-6;
+/// A following error that is the same as its limit in the judge's numbers.
+const SAME: f64 = 0.9999;
 /// Largest duty, as a share of the PWM's counts.
 const FULL: f64 = 0.98;
 
@@ -351,7 +351,7 @@ impl<'a> Effects<'a> {
                     supervision.following_error_s + missed as f64 / self.parameters.limits.rate_hz;
                 (errors.iter().zip(now.rates_rad_s)).any(|(error, rate_rad_s)| {
                     let lag_rad = allowed_s * f64::from(rate_rad_s.abs());
-                    *error > supervision.following_error_rad + lag_rad + READ_RAD
+                    *error > SAME * (supervision.following_error_rad + lag_rad)
                 })
             }
             Effect::FrozenWay => {

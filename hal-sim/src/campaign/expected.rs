@@ -54,9 +54,9 @@ const fn event(effect: Effect) -> Cause {
 const FOLLOWING: Cause = Cause {
     effect: Effect::FollowingError,
     kind: Some(Kind::FollowingError),
-    within_ticks: Some(1),
-    // One that hardly grows is as large as its limit for some ticks.
-    early_ticks: 8,
+    // One that hardly grows is nearly as large as its limit for some ticks.
+    within_ticks: Some(4),
+    early_ticks: 1,
 };
 /// An encoder that repeats its reading, which one of a pivot that is held fast does too: nothing tells the two apart.
 const STILL: Cause = Cause {

@@ -62,9 +62,11 @@ const SOUGHT: Limits = Limits {
     share: 1.0,
 };
 const MOST_MS: f64 = 2.0;
+/// The same of gains that were only turned down: slower ones would not follow any more what such a machine asks for.
+const MOST_FITTED_MS: f64 = 3.0;
 /// What gains are lowered by where they ask too much, and how often at most.
 const LESS: f64 = 0.92;
-const MOST_LESS: usize = 40;
+const MOST_LESS: usize = 20;
 /// What rest leaves of gains with a velocity gain of 40 V s/rad; of lower ones more, so that the loop at rest is the same.
 const REST: f64 = 0.1;
 const REST_VELOCITY_V_S_RAD: f64 = 40.0;
@@ -103,16 +105,17 @@ fn with_gains(parameters: &Parameters, gains: &Gains) -> Parameters {
     told
 }
 
-/// The fastest of slower and slower gains that is stable and keeps Ms at every place; the slowest, where none does.
-fn slowed_until_sound(plants: &[Plant], mut gains: Gains) -> Gains {
+/// The fastest of slower and slower gains that is stable and keeps Ms at every place; the gains as they are, where none does.
+fn slowed_until_sound(plants: &[Plant], gains: Gains, most_ms: f64) -> Gains {
+    let mut slower = gains;
     for _ in 0..MOST_LESS {
         let all = (plants.iter())
-            .map(|plant| margins(plant, &gains, Timing::STAGE.tick_s))
+            .map(|plant| margins(plant, &slower, Timing::STAGE.tick_s))
             .reduce(Margins::worse);
-        if all.is_none_or(|all| all.is_stable && all.ms <= MOST_MS) {
-            break;
+        if all.is_none_or(|all| all.is_stable && all.ms <= most_ms) {
+            return slower;
         }
-        gains = gains.slowed(LESS);
+        slower = slower.slowed(LESS);
     }
     gains
 }
@@ -134,7 +137,7 @@ pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Par
     );
     match tuned {
         Ok(tuned) => {
-            let sound = slowed_until_sound(&plants(&model, &PLACES), tuned.gains);
+            let sound = slowed_until_sound(&plants(&model, &PLACES), tuned.gains, MOST_MS);
             with_gains(parameters, &sound)
         }
         Err(_) => with_gains_fitted(parameters, stage),
@@ -204,7 +207,7 @@ const SAFETY: f64 = 0.6;
 
 /// The same with gains that its resonances bear, as who puts it into service turns them down: as crossovers fall on machines that were
 /// tried (272 Hz rigid; 240, 204 and 120 with guides that resonate at 796, 503 and 218 Hz; three quarters of that with a transmission of
-/// 600 Hz), then by two fifths, and further until the loops keep an Ms of 2 everywhere. In a hundredth of the time that a search takes.
+/// 600 Hz), then by two fifths, and further until the loops keep an Ms of 3 everywhere. In a hundredth of the time that a search takes.
 #[must_use]
 pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Parameters {
     let mut told = parameters.clone();
@@ -227,7 +230,8 @@ pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Pa
         gains.position_1_s *= share;
         gains.integral_v_rad *= share * share;
     }
-    let sound = slowed_until_sound(&plants(&loop_model(stage), &PLACES), gains(&told));
+    let plants = plants(&loop_model(stage), &PLACES);
+    let sound = slowed_until_sound(&plants, gains(&told), MOST_FITTED_MS);
     for (gains, slower) in told.servo.gains.iter_mut().zip(sound.pivots) {
         *gains = slower.gains;
     }
