@@ -63,9 +63,9 @@ fn friction_that_is_known_hardly_shows() {
     let options = machine(true, false);
     let [untold, told] = [Some(UNTOLD), None].map(|guides| errors(&options, guides));
     println!("untold {untold:?}, told {told:?}");
-    // 45 and 167 nm.
+    // 48 and 167 nm.
     assert!(
-        told[0] < 0.050 && untold[0] > 0.150,
+        told[0] < 0.053 && untold[0] > 0.150,
         "{told:?} for {untold:?}"
     );
 }
@@ -75,12 +75,12 @@ fn a_platform_on_soft_guides_is_where_it_should_be() {
     let options = machine(false, true);
     let [untold, told] = [Some(UNTOLD), None].map(|guides| errors(&options, guides));
     println!("untold {untold:?}, told {told:?}");
-    // 41 and 88 nm: what the encoders see is all that is left. The pushes for it cost 2 ms of settling.
+    // 21 and 78 nm: what the encoders see is all that is left. The pushes for it cost 3 ms of settling.
     assert!(
-        told[1] < 0.045 && untold[1] > 0.079,
+        told[1] < 0.0232 && untold[1] > 0.070,
         "{told:?} for {untold:?}"
     );
-    assert!(told[2] < 5.5, "{told:?}");
+    assert!(told[2] < 4.4, "{told:?}");
 }
 
 /// The same pose gone to from both sides: what stays between the two is what the guides keep of the friction.
@@ -102,8 +102,8 @@ fn lost_motion_becomes_less() {
         lost_nm(&run)
     });
     println!("untold {untold:?} nm, told {told:?} nm");
-    // 4.5 and 26 nm.
-    assert!(told < 5.0 && untold > 23.4, "{told} for {untold}");
+    // 4.9 and 27 nm.
+    assert!(told < 5.4 && untold > 24.0, "{told} for {untold}");
 }
 
 /// What no encoder sees of the centre's error at rest, nm rms.
