@@ -28,7 +28,7 @@ const fn at(millions: u64, stream_ticks: [u64; 2]) -> BusyOptions {
 
 /// Chips of 1.6 to 1.9 cycles an instruction, with the streams that they follow, and with faster ones.
 pub const BUSY_CHIPS: [BusyOptions; 5] = [
-    at(105, [20, 40]),
+    at(105, [40, 80]),
     at(93, [40, 80]),
     at(88, [80, 160]),
     at(93, [20, 20]),
