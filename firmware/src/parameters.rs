@@ -391,6 +391,14 @@ pub struct RecorderParameters {
     pub before: u32,
 }
 
+impl Guides {
+    /// Whether there is anything of them to be made up for.
+    #[must_use]
+    pub fn are_told(&self) -> bool {
+        self.coulomb_n != 0.0 || self.viscous_n_s_m != 0.0 || self.stiffness_n_um != 0.0
+    }
+}
+
 impl FeedbackFilters {
     /// No filter.
     pub const NONE: Self = Self {

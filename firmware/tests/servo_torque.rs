@@ -2,9 +2,7 @@
 
 mod proptest_settings;
 
-use firmware::control::servo::{
-    Presliding, ServoConfig, guide_forces, pivot_torques, platform_torques,
-};
+use firmware::control::servo::{Presliding, ServoConfig, friction_torques, platform_torques};
 use firmware::parameters::{Parameters, Platform};
 use kinematics::{Acceleration, Pose, Twist, in_platform_axes, inverse};
 use proptest::prelude::*;
@@ -122,17 +120,16 @@ proptest! {
         (q, v, _) in states(),
         friction in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0],
     ) {
-        let body = ServoConfig::new(&parameters(0.0, [0.0; 2])).body;
         let lengths = |t: f64| {
             let at = |k: usize, unit: f64| (q[k] + t * v[k]) / unit;
             let pose = Pose { x: at(0, RADIUS_M), y: at(1, RADIUS_M), theta: at(2, 1.0) };
             inverse(&pose).unwrap().guides.map(|guide| guide.rho())
         };
         let guides = inverse(&Pose { x: q[0] / RADIUS_M, y: q[1] / RADIUS_M, theta: q[2] }).unwrap().guides;
-        let guides = guides.map(|guide| guide.map(|value: f64| value as f32));
-        let along = friction.map(|f| f as f32);
-        let across = guide_forces(&body, &guides, &Twist::default(), &Acceleration::default(), &along);
-        let torques = pivot_torques(&across, &guides, &along).map(f64::from);
+        let [along, rho, cosines] = [friction, guides.map(|guide| guide.rho()), guides.map(|guide| guide.cosine)]
+            .map(|values| values.map(|value: f64| value as f32));
+        let [_, torques] = friction_torques(&along, &rho, &cosines);
+        let torques = torques.map(f64::from);
         let done: f64 = (0..3).map(|i| torques[i] * (0..3).map(|k| pivot_per(q, k)[i] * v[k]).sum::<f64>()).sum();
         let (before, after) = (lengths(-1e-6), lengths(1e-6));
         let lost: f64 = (0..3).map(|i| friction[i] * (after[i] - before[i]) / 2e-6).sum();

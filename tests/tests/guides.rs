@@ -1,7 +1,7 @@
 //! What the carriages do on their guides, made up for by a controller that has been told of it: twins of the same machine, of which one's
 //! controller knows nothing of its guides.
 
-use firmware::parameters::{Guides, Parameters};
+use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::plant::Imperfections;
 use hal_sim::report::{Move, Run};
@@ -25,15 +25,21 @@ fn machine(guide_friction: bool, guide_compliance: bool) -> RunOptions {
     }
 }
 
-/// All that is told of the machine but its guides, which one twin is told too.
-fn parameters(options: &RunOptions, guides: Option<Guides>) -> Parameters {
+/// Which twin: its controller is told of all of the machine but its guides, or of these too.
+#[derive(Clone, Copy, PartialEq)]
+enum Twin {
+    Untold,
+    Told,
+}
+
+fn parameters(options: &RunOptions, twin: Twin) -> Parameters {
     let stage = stage_parameters(options);
-    let told = with_machine_told(&controller_parameters(options), &stage);
-    let mut fitted = with_gains_fitted(&told, &stage);
-    if let Some(guides) = guides {
-        fitted.guides = guides;
+    let machine = with_machine_told(&controller_parameters(options), &stage);
+    let fitted = with_gains_fitted(&machine, &stage);
+    match twin {
+        Twin::Untold => fitted,
+        Twin::Told => with_guides_told(&fitted, &stage),
     }
-    fitted
 }
 
 fn run(options: &RunOptions, parameters: &Parameters, script: &str) -> Run {
@@ -47,8 +53,8 @@ fn run(options: &RunOptions, parameters: &Parameters, script: &str) -> Run {
 const MOVES: &str = "FRF\nMOV X 40 Y 10 W 20\nWAC ONT? X = 1\nMOV X -40 Y 30 W -20\nWAC ONT? X = 1\nMOV X 0 Y -50\nWAC ONT? X = 1\n";
 
 /// Errors of the following centre and of its true pose, rms, um; mean settling, ms.
-fn errors(options: &RunOptions, guides: Option<Guides>) -> [f64; 3] {
-    let run = run(options, &parameters(options, guides), MOVES);
+fn errors(options: &RunOptions, twin: Twin) -> [f64; 3] {
+    let run = run(options, &parameters(options, twin), MOVES);
     let statistics = run.trace.statistics();
     let settling: Vec<f64> = run.moves.iter().filter_map(Move::settle_s).collect();
     let mean_s = settling.iter().sum::<f64>() / settling.len() as f64;
@@ -56,12 +62,12 @@ fn errors(options: &RunOptions, guides: Option<Guides>) -> [f64; 3] {
     [seen.xy_um.rms(), truth.xy_um.rms(), 1e3 * mean_s]
 }
 
-const UNTOLD: Guides = Parameters::REFERENCE.guides;
+const TWINS: [Twin; 2] = [Twin::Untold, Twin::Told];
 
 #[test]
 fn friction_that_is_known_hardly_shows() {
     let options = machine(true, false);
-    let [untold, told] = [Some(UNTOLD), None].map(|guides| errors(&options, guides));
+    let [untold, told] = TWINS.map(|twin| errors(&options, twin));
     println!("untold {untold:?}, told {told:?}");
     // 48 and 167 nm.
     assert!(
@@ -73,7 +79,7 @@ fn friction_that_is_known_hardly_shows() {
 #[test]
 fn a_platform_on_soft_guides_is_where_it_should_be() {
     let options = machine(false, true);
-    let [untold, told] = [Some(UNTOLD), None].map(|guides| errors(&options, guides));
+    let [untold, told] = TWINS.map(|twin| errors(&options, twin));
     println!("untold {untold:?}, told {told:?}");
     // 21 and 78 nm: what the encoders see is all that is left. The pushes for it cost 3 ms of settling.
     assert!(
@@ -97,8 +103,8 @@ fn lost_motion_becomes_less() {
         script
     });
     let options = machine(true, true);
-    let [untold, told] = [Some(UNTOLD), None].map(|guides| {
-        let run = run(&options, &parameters(&options, guides), &SCRIPT);
+    let [untold, told] = TWINS.map(|twin| {
+        let run = run(&options, &parameters(&options, twin), &SCRIPT);
         lost_nm(&run)
     });
     println!("untold {untold:?} nm, told {told:?} nm");

@@ -2,7 +2,7 @@
 
 use super::config::Config;
 use super::pivot_setpoints::{PivotSetpoints, pose};
-use super::servo::{guide_forces, pivot_torques};
+use super::servo::platform_torques;
 use crate::calibration::{Calibration, CalibrationMargins, IDEAL};
 use crate::motion::Position;
 use crate::number::Fixed;
@@ -253,9 +253,7 @@ impl Calibrated {
     fn solve(&self, config: &Config, pose: &Pose<Fixed>) -> Option<CorrectedInverse<Fixed>> {
         let (twist, acceleration) = (Twist::default(), Acceleration::default());
         let (mut at, mut unused) = (None, PivotSetpoints::at_rest([Angle::ZERO; 3]));
-        // On the stack: a constant would be read from flash.
-        let friction = [0.0_f32; 3];
-        let at_rest = (&twist, &acceleration, &friction);
+        let at_rest = (&twist, &acceleration);
         let _ = self.pivot_setpoints(config, pose, at_rest, &mut unused, Some(&mut at));
         at
     }
@@ -268,7 +266,7 @@ impl Calibrated {
         &self,
         config: &Config,
         pose: &Pose<Fixed>,
-        (twist, acceleration, friction): (&Twist<f32>, &Acceleration<f32>, &[f32; 3]),
+        (twist, acceleration): (&Twist<f32>, &Acceleration<f32>),
         wanted: &mut PivotSetpoints,
         solved: Option<&mut Option<CorrectedInverse<Fixed>>>,
     ) -> Option<()> {
@@ -277,8 +275,7 @@ impl Calibrated {
         let (twist, acceleration) = in_platform_axes(guides, twist, acceleration);
         wanted.angles = at.encoders;
         wanted.motion = corrected_pivot_motion(&at, &self.near.lines, &twist, &acceleration);
-        wanted.across = guide_forces(&config.servo.body, guides, &twist, &acceleration, friction);
-        wanted.torques = pivot_torques(&wanted.across, guides, friction);
+        wanted.torques = platform_torques(&config.servo.body, guides, &twist, &acceleration);
         wanted.lengths = [guides[0].rho(), guides[1].rho(), guides[2].rho()];
         wanted.cosines = [guides[0].cosine, guides[1].cosine, guides[2].cosine];
         if let Some(solved) = solved {

@@ -36,8 +36,8 @@ pub struct Config {
     pub steps: PositionSteps,
     /// Servo.
     pub servo: ServoConfig,
-    /// Guides.
-    pub guides: GuideConfig,
+    /// Guides, where they are told of.
+    pub guides: Option<GuideConfig>,
     /// What becomes of its gains at rest.
     pub rest_mode: RestModeConfig,
     /// Supervision.

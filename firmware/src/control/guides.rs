@@ -2,17 +2,16 @@
 //! so both are made up for from the setpoint, by what the controller has been told of them.
 //!
 //! Friction F of a carriage is a force along its guide on the platform, and the same backwards on its pivot. It joins the torques
-//! that the platform asks for ([`guide_forces`](super::servo::guide_forces)).
+//! that the platform asks for ([`friction_torques`]).
 //!
 //! A guide that gives way by `N / k` under the force N across it leaves the platform behind: it sags by `m a / 1.5 k` while it is
 //! accelerated, and keeps what the friction of the other guides leaves in the springs at rest (lost motion, 1.3 F / k to either side). So the
 //! pivot leads by as much: `N / (k R c)`, c the cosine of its angle to the guide. A mass on a spring whose foot moves by
 //! `x + m x'' / k` moves by x: it does not ring either.
 
-use super::config::Config;
 use super::inspection::LOOK_TICKS;
 use super::pivot_setpoints::PivotSetpoints;
-use super::servo::Presliding;
+use super::servo::{Presliding, friction_torques};
 use super::units::UNITS_PER_RAD;
 use crate::parameters::Parameters;
 use kinematics::Angle;
@@ -34,13 +33,13 @@ pub struct GuideConfig {
 }
 
 impl GuideConfig {
-    /// Derives the constants.
-    pub fn new(parameters: &Parameters) -> Self {
+    /// Derives the constants; `None` where there is nothing to be made up for.
+    pub fn new(parameters: &Parameters) -> Option<Self> {
         let guides = &parameters.guides;
         let radius_m = parameters.geometry.radius_mm * 1e-3;
         let look_s = f64::from(LOOK_TICKS) / parameters.limits.rate_hz;
         let stiffness_n_m = guides.stiffness_n_um * 1e6;
-        Self {
+        guides.are_told().then(|| Self {
             coulomb: (guides.coulomb_n * radius_m) as f32,
             viscous: (guides.viscous_n_s_m * radius_m * radius_m / look_s) as f32,
             presliding_lengths: (radius_m / (guides.presliding_um * 1e-6)) as f32,
@@ -49,13 +48,7 @@ impl GuideConfig {
             } else {
                 0.0
             },
-        }
-    }
-
-    /// Whether there is anything to be made up for.
-    #[inline]
-    fn is_ideal(&self) -> bool {
-        self.coulomb == 0.0 && self.viscous == 0.0 && self.compliance == 0.0
+        })
     }
 }
 
@@ -65,8 +58,9 @@ pub(super) struct Guides {
     contacts: [Presliding; 3],
     /// Where each carriage was when it was looked at, track radii.
     places: [Option<f32>; 3],
-    /// Friction, N m.
+    /// Friction of the carriages times the track's radius, positive where a pivot goes outwards, and the torques that it asks for, N m.
     friction: [f32; 3],
+    torques: [f32; 3],
     leads: [Lead; 3],
 }
 
@@ -82,25 +76,29 @@ struct Lead {
 }
 
 impl Guides {
-    /// Friction of the carriages, times the track's radius: N m, positive where a pivot goes outwards.
-    #[inline]
-    pub fn friction(&self) -> &[f32; 3] {
-        &self.friction
-    }
-
-    /// The next setpoint: its pivots lead by what their guides give way. In a tick at most one guide is looked at, that of `turn`.
-    #[inline]
-    pub fn lead(&mut self, config: &Config, wanted: &mut PivotSetpoints, turn: usize) {
-        if !config.guides.is_ideal() {
-            self.look_at(config, wanted, turn);
-            if config.guides.compliance != 0.0 {
-                self.add_lead(wanted);
-            }
+    /// The next setpoint with friction made up for, and with pivots that lead by what their guides give way. In a tick at most one guide is looked
+    /// at, that of `turn`.
+    #[inline(never)]
+    pub fn make_up(
+        &mut self,
+        told: &GuideConfig,
+        rate_hz: f32,
+        wanted: &mut PivotSetpoints,
+        turn: usize,
+    ) {
+        self.look_at(told, rate_hz, wanted, turn);
+        for i in 0..3 {
+            let lead = &mut self.leads[i];
+            lead.now = lead.now.wrapping_add(lead.step);
+            wanted.angles[i] += Angle::from_units((lead.now >> LEAD_PLACES).into());
+            wanted.motion.rates[i] += lead.rate;
+            wanted.motion.accelerations[i] += lead.acceleration;
+            wanted.torques[i] += self.torques[i];
         }
     }
 
-    #[inline(never)]
-    fn look_at(&mut self, config: &Config, wanted: &PivotSetpoints, turn: usize) {
+    #[inline]
+    fn look_at(&mut self, told: &GuideConfig, rate_hz: f32, wanted: &PivotSetpoints, turn: usize) {
         let (Some(contact), Some(place), Some(friction), Some(lead)) = (
             self.contacts.get_mut(turn),
             self.places.get_mut(turn),
@@ -109,29 +107,22 @@ impl Guides {
         ) else {
             return;
         };
-        let (Some(&now), Some(&cosine), Some(&across)) = (
+        let (Some(&now), Some(&cosine), Some(&torque)) = (
             wanted.lengths.get(turn),
             wanted.cosines.get(turn),
-            wanted.across.get(turn),
+            wanted.torques.get(turn),
         ) else {
             return;
         };
-        let guides = &config.guides;
         let way = place.map_or(0.0, |before| now - before);
         *place = Some(now);
-        *friction = guides.coulomb * contact.advance(way * guides.presliding_lengths)
-            + guides.viscous * way;
-        lead.aim_at(guides.compliance * across / cosine, config.limits.rate_hz);
-    }
-
-    #[inline(never)]
-    fn add_lead(&mut self, wanted: &mut PivotSetpoints) {
-        for i in 0..3 {
-            let lead = &mut self.leads[i];
-            lead.now = lead.now.wrapping_add(lead.step);
-            wanted.angles[i] += Angle::from_units((lead.now >> LEAD_PLACES).into());
-            wanted.motion.rates[i] += lead.rate;
-            wanted.motion.accelerations[i] += lead.acceleration;
+        *friction =
+            told.coulomb * contact.advance(way * told.presliding_lengths) + told.viscous * way;
+        let [across, torques] = friction_torques(&self.friction, &wanted.lengths, &wanted.cosines);
+        self.torques = torques;
+        if let Some(across) = across.get(turn) {
+            let force = torque / cosine + across;
+            lead.aim_at(told.compliance * force / cosine, rate_hz);
         }
     }
 }

@@ -60,15 +60,14 @@ impl State {
     fn find_pivots(&mut self, config: &Config, platform: &Setpoint) -> bool {
         let wanted =
             (self.next.pivots).get_or_insert_with(|| PivotSetpoints::at_rest([Angle::ZERO; 3]));
-        let friction = self.guides.friction();
         let found = if self.calibrated.is_on {
             pose(&platform.position).and_then(|pose| {
                 self.calibrated.follow_from(&pose);
-                let motion = (&platform.twist, &platform.acceleration, friction);
+                let motion = (&platform.twist, &platform.acceleration);
                 (self.calibrated).pivot_setpoints(config, &pose, motion, wanted, None)
             })
         } else {
-            pivot_setpoints(config, friction, platform, wanted)
+            pivot_setpoints(config, platform, wanted)
         };
         if found.is_none() {
             self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
@@ -94,7 +93,10 @@ impl State {
             } else {
                 [NOBODY, i]
             };
-            self.guides.lead(config, wanted, guide);
+            if let Some(told) = &config.guides {
+                self.guides
+                    .make_up(told, config.limits.rate_hz, wanted, guide);
+            }
             feed_forward(&mut self.servo, config, wanted, gear);
         }
         true

@@ -1,7 +1,7 @@
 //! From the pose's setpoint to those of the three pivots, and what a tick is to follow.
 
 use super::config::Config;
-use super::servo::{guide_forces, pivot_torques};
+use super::servo::platform_torques;
 use crate::motion::{Position, Setpoint};
 use crate::number::Fixed;
 use kinematics::{
@@ -14,10 +14,7 @@ use kinematics::{
 pub(super) struct PivotSetpoints {
     pub angles: [Angle; 3],
     pub motion: PivotMotion<f32>,
-    /// What platform, payload and the friction of the carriages ask for, N m.
     pub torques: [f32; 3],
-    /// Forces across the guides on the platform, to their left, times the track's radius: N m.
-    pub across: [f32; 3],
     /// Distances along the guides, track radii, and the cosines of their angles to the tangents: all that is used of the guides
     /// later.
     pub lengths: [f32; 3],
@@ -35,7 +32,6 @@ impl PivotSetpoints {
                 accelerations: [0.0; 3],
             },
             torques: [0.0; 3],
-            across: [0.0; 3],
             lengths: [0.0; 3],
             cosines: [0.0; 3],
         }
@@ -62,7 +58,6 @@ pub(super) struct NextSetpoint {
 #[inline(never)]
 pub(super) fn pivot_setpoints(
     config: &Config,
-    friction: &[f32; 3],
     setpoint: &Setpoint,
     wanted: &mut PivotSetpoints,
 ) -> Option<()> {
@@ -71,8 +66,7 @@ pub(super) fn pivot_setpoints(
     let (twist, acceleration) = in_platform_axes(&guides, &setpoint.twist, &setpoint.acceleration);
     wanted.angles = pivots;
     wanted.motion = pivot_motion_in_platform_axes(&guides, &twist, &acceleration);
-    wanted.across = guide_forces(&config.servo.body, &guides, &twist, &acceleration, friction);
-    wanted.torques = pivot_torques(&wanted.across, &guides, friction);
+    wanted.torques = platform_torques(&config.servo.body, &guides, &twist, &acceleration);
     wanted.lengths = [guides[0].rho(), guides[1].rho(), guides[2].rho()];
     wanted.cosines = guides.map(|guide| guide.cosine);
     Some(())

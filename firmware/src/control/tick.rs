@@ -160,10 +160,11 @@ pub fn tick_and_drive<'a>(
     // Handled where it lies: constants are too long to be moved twice.
     let mut rests = false;
     if commanded && let Some(command) = queues.commands.peek() {
-        // Constants are long to copy, and a setpoint that rests is what it was.
-        rests = matches!(command, Command::Configure(_)) && state.setpoint_rests();
+        let is_long = matches!(command, Command::Configure(_));
         state.commands = state.commands.wrapping_add(1);
         state.handle_command(config, command, queues.plans, &pivots);
+        // Constants are long to copy, and a setpoint that rests is what it was.
+        rests = is_long && state.setpoint_rests();
         let _ = queues.commands.dequeue();
     }
     if !rests {

@@ -82,15 +82,14 @@ impl Parameters {
 
     /// A tick has time for four of each pivot's: sines of ripple, one of which the gear's error takes the place of, and one the guides.
     fn sines_fit(&self) -> bool {
-        let (servo, guides) = (&self.servo, &self.guides);
-        let has_guides =
-            guides.coulomb_n != 0.0 || guides.viscous_n_s_m != 0.0 || guides.stiffness_n_um != 0.0;
+        let servo = &self.servo;
         (servo.ripple.iter().zip(&servo.gear_errors)).all(|(ripple, gear)| {
             let sines = ripple
                 .harmonics
                 .iter()
                 .filter(|sine| sine.amplitude_n_m != 0.0);
-            let others = usize::from(gear.amplitude_urad != 0.0) + usize::from(has_guides);
+            let others =
+                usize::from(gear.amplitude_urad != 0.0) + usize::from(self.guides.are_told());
             sines.count() + others <= HARMONICS
         })
     }

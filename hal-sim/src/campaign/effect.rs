@@ -34,8 +34,8 @@ const LIMITED: f64 = 0.995;
 const NEARLY_LIMITED: f64 = 0.9;
 /// What the heat may be under its threshold for one who sees every fourth sample of the current.
 const NEARLY: f64 = 0.99;
-/// A following error that is the same as its limit in the judge's numbers.
-const SAME: f64 = 0.9999;
+/// A following error, over its limit, that is one for certain, and that may be one: the judge's numbers are not the controller's to the bit.
+const FOLLOWING: [f64; 2] = [1.0001, 0.9999];
 /// Largest duty, as a share of the PWM's counts.
 const FULL: f64 = 0.98;
 
@@ -110,8 +110,10 @@ pub enum Effect {
     NearlyOscillates,
     /// One late tick more than are forgiven.
     LateTicks,
-    /// What the encoders show is too far from the setpoint.
+    /// What the encoders show is too far from the setpoint, for certain and perhaps.
     FollowingError,
+    /// See above.
+    NearlyFollowingError,
     /// The setpoint of the pivot has gone further than a reading may stay the same.
     FrozenWay,
     /// A reading has stayed the same for as long as it may.
@@ -341,8 +343,9 @@ impl<'a> Effects<'a> {
             }
             Effect::NearlyOscillates => self.has_swung(2..4, REVERSALS[1]),
             Effect::LateTicks => tick >= first + MISSED_EVERY * u64::from(supervision.late_ticks),
-            Effect::FollowingError if self.driven == 0 => false,
-            Effect::FollowingError => {
+            Effect::FollowingError | Effect::NearlyFollowingError if self.driven == 0 => false,
+            Effect::FollowingError | Effect::NearlyFollowingError => {
+                let over = FOLLOWING[usize::from(effect == Effect::NearlyFollowingError)];
                 let errors = shown_errors_rad(now.shown, self.parameters, now.position);
                 // The setpoint is behind by what the pivots go in ticks that do not come.
                 let age = tick.checked_sub(scenario.at);
@@ -351,7 +354,7 @@ impl<'a> Effects<'a> {
                     supervision.following_error_s + missed as f64 / self.parameters.limits.rate_hz;
                 (errors.iter().zip(now.rates_rad_s)).any(|(error, rate_rad_s)| {
                     let lag_rad = allowed_s * f64::from(rate_rad_s.abs());
-                    *error > SAME * (supervision.following_error_rad + lag_rad)
+                    *error > over * (supervision.following_error_rad + lag_rad)
                 })
             }
             Effect::FrozenWay => {

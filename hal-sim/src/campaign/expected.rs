@@ -54,9 +54,14 @@ const fn event(effect: Effect) -> Cause {
 const FOLLOWING: Cause = Cause {
     effect: Effect::FollowingError,
     kind: Some(Kind::FollowingError),
-    // One that hardly grows is nearly as large as its limit for some ticks.
-    within_ticks: Some(4),
+    within_ticks: Some(1),
     early_ticks: 1,
+};
+/// One that hardly grows is nearly as large as its limit for some ticks.
+const NEARLY_FOLLOWING: Cause = Cause {
+    effect: Effect::NearlyFollowingError,
+    within_ticks: None,
+    ..FOLLOWING
 };
 /// An encoder that repeats its reading, which one of a pivot that is held fast does too: nothing tells the two apart.
 const STILL: Cause = Cause {
@@ -114,6 +119,7 @@ const MAYBE_CURRENT: Cause = Cause {
 /// What a motion that goes wrong may be found by.
 const MOTION: &[Cause] = &[
     FOLLOWING,
+    NEARLY_FOLLOWING,
     STILL,
     STALLED,
     NEARLY_STALLED,
@@ -207,27 +213,37 @@ impl Injection {
                 SUPPLY_LOW,
                 NEARLY_SUPPLY_LOW,
                 FOLLOWING,
+                NEARLY_FOLLOWING,
                 STALLED,
                 NEARLY_STALLED,
             ],
             Self::EmergencyStop => &[EMERGENCY_STOP],
             // At full speed the pivots lead by what was missed, which may be too far.
-            Self::LateLoop => &const { [cause(Effect::LateTicks, Kind::LoopLate, 0), FOLLOWING] },
-            Self::FewMissedTicks(_) => &[FOLLOWING],
-            Self::DirectionStuck => &[FOLLOWING, CURRENT, MAYBE_CURRENT],
+            Self::LateLoop => {
+                &const {
+                    [
+                        cause(Effect::LateTicks, Kind::LoopLate, 0),
+                        FOLLOWING,
+                        NEARLY_FOLLOWING,
+                    ]
+                }
+            }
+            Self::FewMissedTicks(_) => &[FOLLOWING, NEARLY_FOLLOWING],
+            Self::DirectionStuck => &[FOLLOWING, NEARLY_FOLLOWING, CURRENT, MAYBE_CURRENT],
             Self::DriveLost => &[
                 FOLLOWING,
+                NEARLY_FOLLOWING,
                 STILL,
                 STALLED,
                 NEARLY_STALLED,
                 CURRENT,
                 MAYBE_CURRENT,
             ],
-            Self::Jam => &[FOLLOWING, STILL, STALLED, NEARLY_STALLED],
+            Self::Jam => &[FOLLOWING, NEARLY_FOLLOWING, STILL, STALLED, NEARLY_STALLED],
             // A machine that is hit rings.
             Self::Knock(_) | Self::Runaway(_) => MOTION,
-            Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, STILL],
-            Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING],
+            Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, NEARLY_FOLLOWING, STILL],
+            Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING, NEARLY_FOLLOWING],
             Self::DamagedSettings => &[DAMAGED],
             Self::Warning | Self::QueueFull => &const { [event(Effect::AtOnce)] },
             Self::LoopStands | Self::Crash => {
@@ -255,6 +271,7 @@ impl Injection {
                         some_bad(Kind::EncoderError),
                         some_bad(Kind::EncoderJump),
                         FOLLOWING,
+                        NEARLY_FOLLOWING,
                         OVERSPEED,
                         BRIEFLY_OVERSPEED,
                     ]
@@ -263,8 +280,16 @@ impl Injection {
             Self::Both(other) => match other {
                 Other::EmergencyStop => &[SILENT, EMERGENCY_STOP],
                 Other::Supply => &[SILENT, SUPPLY_LOW, NEARLY_SUPPLY_LOW],
-                Other::Jam => &[SILENT, FOLLOWING, STILL, STALLED],
-                Other::DriveLost => &[SILENT, FOLLOWING, STILL, STALLED, CURRENT, MAYBE_CURRENT],
+                Other::Jam => &[SILENT, FOLLOWING, NEARLY_FOLLOWING, STILL, STALLED],
+                Other::DriveLost => &[
+                    SILENT,
+                    FOLLOWING,
+                    NEARLY_FOLLOWING,
+                    STILL,
+                    STALLED,
+                    CURRENT,
+                    MAYBE_CURRENT,
+                ],
             },
             Self::Drift(_)
             | Self::Scale(_)

@@ -126,10 +126,7 @@ fn machine(drawn: u64, seed: u64) -> StageParameters {
 fn told(stage: &StageParameters) -> Parameters {
     let machine = Told::Machine.parameters(&Parameters::REFERENCE, stage);
     let fitted = with_motion_fitted(&with_gains_fitted(&machine, stage));
-    let mut told = with_wiring_told(&fitted, stage);
-    // Nobody looks for what carriages rub and guides give way.
-    told.guides = Parameters::REFERENCE.guides;
-    told
+    with_wiring_told(&fitted, stage)
 }
 
 /// The first tick from `at` on in which no line is on its way: others would wait for it instead of being refused.

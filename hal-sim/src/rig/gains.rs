@@ -5,7 +5,9 @@ use crate::machine::plant::PlantParameters;
 use commissioning::chain::{Chain, Load, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
-use commissioning::tuning::{Gains, Limits, Margins, PivotGains, Plant, margins, tune};
+use commissioning::tuning::{
+    Gains, Limits, MOST_MS, PLACES, PivotGains, Plant, SEARCHED, rest_stiffness, tune,
+};
 use firmware::control::servo::{BorneLimits, ServoConfig, carried_inertia};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch, Parameters};
 
@@ -51,73 +53,19 @@ pub fn loop_model(stage: &StageParameters) -> (Chain, [Electrical; 3]) {
     (chain, [electrical; 3])
 }
 
-/// Places that gains have to be good at, track radii: in the middle, and a ring's width from the rim, once towards each guide.
-const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.7, 0.0], [-0.35, 0.6], [-0.35, -0.6]];
-/// How many of them the search looks at; the others differ by the load's centre alone.
-const SEARCHED: usize = 2;
-/// What is sought, and what is kept.
-const SOUGHT: Limits = Limits {
-    ms: 1.9,
-    resonance_peak: 10.0,
-    share: 1.0,
-};
-const MOST_MS: f64 = 2.0;
-/// The same of gains that were only turned down: slower ones would not follow any more what such a machine asks for.
+/// Ms of gains that were only turned down: slower ones would not follow any more what such a machine asks for.
 const MOST_FITTED_MS: f64 = 3.0;
-/// What gains are lowered by where they ask too much, and how often at most.
-const LESS: f64 = 0.92;
-const MOST_LESS: usize = 20;
-/// What rest leaves of gains with a velocity gain of 40 V s/rad; of lower ones more, so that the loop at rest is the same.
-const REST: f64 = 0.1;
-const REST_VELOCITY_V_S_RAD: f64 = 40.0;
 
 /// What the servos see at these places.
 fn plants((chain, electrical): &(Chain, [Electrical; 3]), places: &[[f64; 2]]) -> Vec<Plant> {
-    (places.iter())
-        .filter_map(|[x, y]| Place::new(*x, *y))
-        .map(|place| Plant::from_model(electrical, chain, &place, &Timing::STAGE))
-        .collect()
+    Plant::at_places(electrical, chain, places, &Timing::STAGE)
 }
 
-/// The gains of parameters.
-fn gains(parameters: &Parameters) -> Gains {
-    let servo = &parameters.servo;
-    Gains {
-        pivots: [0, 1, 2].map(|i| PivotGains {
-            gains: servo.gains[i],
-            filters: servo.filters[i],
-        }),
-        scheduled_inertia_kg_m2: servo.scheduled_inertia_kg_m2,
-    }
-}
-
+/// Parameters with gains, and with what rest leaves of them.
 fn with_gains(parameters: &Parameters, gains: &Gains) -> Parameters {
-    let mut told = parameters.clone();
-    for (i, pivot) in gains.pivots.iter().enumerate() {
-        told.servo.gains[i] = pivot.gains;
-        told.servo.filters[i] = pivot.filters;
-    }
-    told.servo.scheduled_inertia_kg_m2 = gains.scheduled_inertia_kg_m2;
-    let velocity = (gains.pivots.iter())
-        .map(|pivot| pivot.gains.velocity_v_s_rad)
-        .fold(f64::INFINITY, f64::min);
-    told.servo.rest.stiffness = (REST * REST_VELOCITY_V_S_RAD / velocity).clamp(REST, 1.0);
+    let mut told = gains.applied_to(parameters);
+    told.servo.rest.stiffness = rest_stiffness(gains.least_velocity_v_s_rad());
     told
-}
-
-/// The fastest of slower and slower gains that is stable and keeps Ms at every place; the gains as they are, where none does.
-fn slowed_until_sound(plants: &[Plant], gains: Gains, most_ms: f64) -> Gains {
-    let mut slower = gains;
-    for _ in 0..MOST_LESS {
-        let all = (plants.iter())
-            .map(|plant| margins(plant, &slower, Timing::STAGE.tick_s))
-            .reduce(Margins::worse);
-        if all.is_none_or(|all| all.is_stable && all.ms <= most_ms) {
-            return slower;
-        }
-        slower = slower.slowed(LESS);
-    }
-    gains
 }
 
 /// The same with the gains and filters that reject most at 30 Hz and keep an Ms of 1.9, and of 2 at the rim, by the true machine's mathematics: what the
@@ -133,14 +81,15 @@ pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Par
         &chain.resonances_hz(&centre),
         chain.inertia(&centre)[(0, 0)],
         &Timing::STAGE,
-        &SOUGHT,
+        &Limits::ON_MODEL,
     );
-    match tuned {
-        Ok(tuned) => {
-            let sound = slowed_until_sound(&plants(&model, &PLACES), tuned.gains, MOST_MS);
-            with_gains(parameters, &sound)
-        }
-        Err(_) => with_gains_fitted(parameters, stage),
+    let sound = (tuned.ok()).and_then(|tuned| {
+        let plants = plants(&model, &PLACES);
+        (tuned.gains).slowed_until_sound(&plants, MOST_MS, Timing::STAGE.tick_s)
+    });
+    match sound {
+        Some((gains, _)) => with_gains(parameters, &gains),
+        None => with_gains_fitted(parameters, stage),
     }
 }
 
@@ -231,11 +180,9 @@ pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Pa
         gains.integral_v_rad *= share * share;
     }
     let plants = plants(&loop_model(stage), &PLACES);
-    let sound = slowed_until_sound(&plants, gains(&told), MOST_FITTED_MS);
-    for (gains, slower) in told.servo.gains.iter_mut().zip(sound.pivots) {
-        *gains = slower.gains;
-    }
-    told
+    // As they are where no slower ones do.
+    let sound = Gains::of(&told).slowed_until_sound(&plants, MOST_FITTED_MS, Timing::STAGE.tick_s);
+    sound.map_or(told.clone(), |(gains, _)| gains.applied_to(&told))
 }
 
 /// The same with a motion that its motors bear.
@@ -312,10 +259,10 @@ mod tests {
         let [found, kept] = [with_gains_tuned(&told, &stage), with_reference_gains(&told)];
         println!(
             "{:?} {}",
-            gains(&found).pivots[0],
+            Gains::of(&found).pivots[0],
             found.servo.scheduled_inertia_kg_m2
         );
-        for (found, kept) in gains(&found).pivots.iter().zip(gains(&kept).pivots) {
+        for (found, kept) in Gains::of(&found).pivots.iter().zip(Gains::of(&kept).pivots) {
             for (found, kept) in numbers(found).into_iter().zip(numbers(&kept)) {
                 assert!((found / kept - 1.0).abs() < 1e-6, "{found} {kept}");
             }

@@ -149,9 +149,15 @@ pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
 pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> RunOutcome {
     let stage = stage_parameters(options);
     let parameters = controller_parameters(options);
-    let calibration = options.told.calibration(&stage);
-    let flash = with_machine_settings(flash, &parameters, calibration.as_ref());
+    let flash = machine_settings(options, flash);
     run_machine(script, &parameters, &stage, options, flash)
+}
+
+/// What the machine comes with, and what its controller is told, in a flash that keeps nothing yet.
+#[must_use]
+pub fn machine_settings(options: &RunOptions, flash: SettingsFlash) -> SettingsFlash {
+    let calibration = options.told.calibration(&stage_parameters(options));
+    with_machine_settings(flash, &controller_parameters(options), calibration.as_ref())
 }
 
 /// The controller's parameters, as the imperfections that are left make them: those that the machine comes with, none, or what it is told.

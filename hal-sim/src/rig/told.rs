@@ -168,7 +168,8 @@ fn reference(stage: &StageParameters) -> StageParameters {
 
 fn with_numbers_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
     let on = &stage.plant.imperfections;
-    let mut told = with_wiring_told(&with_machine_told(parameters, stage), stage);
+    let machine = with_guides_told(&with_machine_told(parameters, stage), stage);
+    let mut told = with_wiring_told(&machine, stage);
     if on.torque_ripple {
         told = with_ripple_told(&told, stage);
     }
@@ -250,8 +251,7 @@ pub const IDENTIFIED_LEARNING: f64 = 0.25;
 #[must_use]
 pub fn with_machine_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
     let drives = with_drives_told(parameters, stage);
-    let carried = with_guides_told(&with_payload_told(&drives, stage), stage);
-    let mut told = with_inertia_scheduled(&carried);
+    let mut told = with_inertia_scheduled(&with_payload_told(&drives, stage));
     told.servo.learning = IDENTIFIED_LEARNING;
     told
 }

@@ -71,9 +71,7 @@ impl SimulatedMachine {
     /// Switched on, with a controller that is told the machine's drives and load unless this flash keeps others.
     #[must_use]
     pub fn told(stage: &StageParameters, flash: SettingsFlash) -> Self {
-        let mut parameters = Told::Machine.parameters(&Parameters::REFERENCE, stage);
-        // Commissioning does not look for what carriages rub and guides give way.
-        parameters.guides = Parameters::REFERENCE.guides;
+        let parameters = Told::Machine.parameters(&Parameters::REFERENCE, stage);
         Self::switched_on(stage, &parameters, flash, None)
     }
 

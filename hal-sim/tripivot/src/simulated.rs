@@ -5,8 +5,8 @@ use embedded_io::Write;
 use firmware::fault::Fault;
 use firmware::gcs::Session;
 use hal_sim::machine::devices::SettingsFlash;
-use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{ControllerMemory, Rig, with_machine_settings};
+use hal_sim::rig::run::{RunOptions, controller_parameters, machine_settings, stage_parameters};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// See the module.
 pub struct Simulated<'a> {
@@ -23,8 +23,7 @@ impl<'a> Simulated<'a> {
         flash: SettingsFlash,
     ) -> Self {
         let (parameters, stage) = (controller_parameters(options), stage_parameters(options));
-        let calibration = options.told.calibration(&stage);
-        let flash = with_machine_settings(flash, &parameters, calibration.as_ref());
+        let flash = machine_settings(options, flash);
         Self {
             rig: Rig::simulated(memory, &stage, &parameters, flash),
             rate_hz: parameters.limits.rate_hz,

@@ -170,9 +170,7 @@ fn finds_errors_within_periods(machine: &StageParameters, told: &str) {
 
 /// Rate and acceleration of a pivot in force: what the machine's true numbers allow, and no more than before.
 fn finds_limits(machine: &StageParameters, told: &str) {
-    let mut truth = Told::Machine.parameters(&Parameters::REFERENCE, machine);
-    // It does not look for what the carriages rub.
-    truth.guides = Parameters::REFERENCE.guides;
+    let truth = Told::Machine.parameters(&Parameters::REFERENCE, machine);
     let borne = BorneLimits::new(&truth);
     let names = ["largest rate (rad/s)", "largest acceleration (rad/s^2)"];
     for (i, borne) in [borne.rate_rad_s, borne.acceleration_rad_s2]

@@ -22,7 +22,7 @@
 
 use super::config::MAX_DUTY;
 use super::inertia::unit_motion;
-use super::platform_torque::{Body, guide_forces, pivot_torques, platform_torques};
+use super::platform_torque::{Body, friction_torques, platform_torques};
 use crate::motion::Limits;
 use crate::number;
 use crate::parameters::{Drive, Parameters, PowerStage};
@@ -285,7 +285,7 @@ impl<'a> Demands<'a> {
             }
         }
         if self.friction > 0.0 {
-            self.add_friction(guides, &mut demands);
+            self.add_friction(&lengths, &cosines, &mut demands);
         }
         let mut direction = [self.speed[0], 0.0];
         for _ in 0..DIRECTIONS {
@@ -296,14 +296,11 @@ impl<'a> Demands<'a> {
     }
 
     /// What the carriages' friction asks for, each in the direction that costs a pivot most.
-    #[inline(never)]
-    fn add_friction(&self, guides: &[Guide<f32>; 3], demands: &mut [Demand; 3]) {
-        let (rest, still) = (Acceleration::default(), Twist::default());
+    fn add_friction(&self, lengths: &[f32; 3], cosines: &[f32; 3], demands: &mut [Demand; 3]) {
         for guide in 0..3 {
             let mut friction = [0.0; 3];
             friction[guide] = self.friction;
-            let across = guide_forces(&self.body, guides, &still, &rest, &friction);
-            let torques = pivot_torques(&across, guides, &friction);
+            let [_, torques] = friction_torques(&friction, lengths, cosines);
             for (demand, torque) in demands.iter_mut().zip(torques) {
                 demand.friction += torque.abs();
             }

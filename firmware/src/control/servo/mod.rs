@@ -51,6 +51,6 @@ pub use gear_error::GearErrorConfig;
 pub use inertia::carried_inertia;
 pub use learnt::Learnt;
 pub use pivot::{LoopSetpoint, PivotFeedback, PivotServo, PivotSetpoint};
-pub use platform_torque::{Body, guide_forces, pivot_torques, platform_torques};
+pub use platform_torque::{Body, friction_torques, platform_torques};
 pub use presliding::Presliding;
 pub use ripple::RippleConfig;

@@ -6,6 +6,7 @@
 
 use super::plant::Plant;
 use super::servo::{At, PivotGains};
+use firmware::parameters::Parameters;
 use nalgebra::{Complex, Matrix3};
 use std::f64::consts::{PI, TAU};
 
@@ -18,7 +19,77 @@ pub struct Gains {
     pub scheduled_inertia_kg_m2: f64,
 }
 
+/// Ms that loops may have, measured or predicted.
+pub const MOST_MS: f64 = 2.0;
+/// What gains are lowered by where they ask too much, and how often at most.
+const LESS: f64 = 0.92;
+const MOST_LESS: usize = 20;
+/// What rest leaves of gains with a velocity gain of 40 V s/rad; of lower ones more, so that the loop at rest is the same.
+const REST: f64 = 0.1;
+const REST_VELOCITY_V_S_RAD: f64 = 40.0;
+
+/// What rest leaves of gains with this velocity gain (parameter 0x54500308).
+#[must_use]
+pub fn rest_stiffness(velocity_v_s_rad: f64) -> f64 {
+    (REST * REST_VELOCITY_V_S_RAD / velocity_v_s_rad).clamp(REST, 1.0)
+}
+
 impl Gains {
+    /// Those of a controller's parameters.
+    #[must_use]
+    pub fn of(parameters: &Parameters) -> Self {
+        let servo = &parameters.servo;
+        Self {
+            pivots: [0, 1, 2].map(|i| PivotGains {
+                gains: servo.gains[i],
+                filters: servo.filters[i],
+            }),
+            scheduled_inertia_kg_m2: servo.scheduled_inertia_kg_m2,
+        }
+    }
+
+    /// Parameters with them.
+    #[must_use]
+    pub fn applied_to(&self, parameters: &Parameters) -> Parameters {
+        let mut applied = parameters.clone();
+        let servo = &mut applied.servo;
+        for (i, pivot) in self.pivots.iter().enumerate() {
+            servo.gains[i] = pivot.gains;
+            servo.filters[i] = pivot.filters;
+        }
+        servo.scheduled_inertia_kg_m2 = self.scheduled_inertia_kg_m2;
+        applied
+    }
+
+    /// The lowest velocity gain of a pivot, V s/rad.
+    #[must_use]
+    pub fn least_velocity_v_s_rad(&self) -> f64 {
+        (self.pivots.iter())
+            .map(|pivot| pivot.gains.velocity_v_s_rad)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The fastest of slower and slower gains that is stable and keeps Ms on all plants, and the worst margins; `None` where none does.
+    #[must_use]
+    pub fn slowed_until_sound(
+        &self,
+        plants: &[Plant],
+        most_ms: f64,
+        tick_s: f64,
+    ) -> Option<(Self, Margins)> {
+        let mut gains = *self;
+        for _ in 0..MOST_LESS {
+            let all = (plants.iter())
+                .map(|plant| margins(plant, &gains, tick_s))
+                .reduce(Margins::worse)?;
+            if all.is_stable && all.ms <= most_ms {
+                return Some((gains, all));
+            }
+            gains = gains.slowed(LESS);
+        }
+        None
+    }
+
     /// A servo that is slower, the same with time stretched: velocity and position gain by the factor, the integral gain by its square.
     #[must_use]
     pub fn slowed(&self, by: f64) -> Self {

@@ -16,8 +16,11 @@ mod margins;
 mod plant;
 mod servo;
 
-pub use margins::{BEYOND, Gains, Margins, REJECTION_HZ, margins, sensitivity, worst_direction};
-pub use plant::{Plant, angle_by_volts, grid};
+pub use margins::{
+    BEYOND, Gains, MOST_MS, Margins, REJECTION_HZ, margins, rest_stiffness, sensitivity,
+    worst_direction,
+};
+pub use plant::{PLACES, Plant, SEARCHED, angle_by_volts, grid};
 pub use servo::PivotGains;
 
 use crate::drive_model::Electrical;
@@ -43,6 +46,14 @@ impl Limits {
     pub const USUAL: Self = Self {
         ms: 1.9,
         resonance_peak: 0.5,
+        share: 1.0,
+    };
+
+    /// What is sought on a model of the machine: a little less than what is asked of its loops. A resonance may be high where its phase is
+    /// good: Ms tells.
+    pub const ON_MODEL: Self = Self {
+        ms: 1.9,
+        resonance_peak: 10.0,
         share: 1.0,
     };
 }

@@ -21,6 +21,11 @@ pub struct Plant {
     pub is_complete: bool,
 }
 
+/// Places that gains have to be good at, track radii: in the middle, and a ring's width from the rim, once towards each guide.
+pub const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.7, 0.0], [-0.35, 0.6], [-0.35, -0.6]];
+/// How many of them a search looks at; the others differ by the load's centre alone, and are looked at after it.
+pub const SEARCHED: usize = 2;
+
 /// Lowest frequency of a grid, Hz; its highest, over half the ticks' rate; where resonances and margins are, from, Hz, and to, over the highest; points
 /// of the three parts, equal by their logarithms.
 const FROM_HZ: f64 = 0.5;
@@ -87,6 +92,20 @@ impl Plant {
             inertia: diagonal_of(&chain.inertia(place)),
             is_complete: true,
         }
+    }
+
+    /// The same at several places; those outside the track are left out.
+    #[must_use]
+    pub fn at_places(
+        electrical: &[Electrical; 3],
+        chain: &Chain,
+        places: &[[f64; 2]],
+        timing: &Timing,
+    ) -> Vec<Self> {
+        (places.iter())
+            .filter_map(|[x, y]| Place::new(*x, *y))
+            .map(|place| Self::from_model(electrical, chain, &place, timing))
+            .collect()
     }
 
     /// As it was measured, at the lines alone: to see what margins a measurement gives at gains that the model was tuned for.

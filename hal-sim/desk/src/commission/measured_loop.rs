@@ -7,7 +7,7 @@ use commissioning::chain::{Chain, Place};
 use commissioning::closed_loop::{LoopLine, closed_loop};
 use commissioning::drive_model::DriveModel;
 use commissioning::record::Timing;
-use commissioning::tuning::{Gains, Plant, REJECTION_HZ, sensitivity, worst_direction};
+use commissioning::tuning::{Gains, MOST_MS, Plant, REJECTION_HZ, sensitivity, worst_direction};
 use drawing::colour;
 use drawing::plane::{Axis, Curve, Plane};
 use drawing::svg::{Point, Rect, Svg};
@@ -16,8 +16,6 @@ use std::f64::consts::TAU;
 
 /// Sets of lines.
 const SETS: u32 = 2;
-/// Largest Ms of a loop that is called sound.
-pub const MOST_MS: f64 = 2.0;
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]

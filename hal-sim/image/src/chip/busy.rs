@@ -28,7 +28,7 @@ const fn at(millions: u64, stream_ticks: [u64; 2]) -> BusyOptions {
 
 /// Chips of 1.6 to 1.9 cycles an instruction, with the streams that they follow, and with faster ones.
 pub const BUSY_CHIPS: [BusyOptions; 5] = [
-    at(105, [40, 80]),
+    at(105, [20, 40]),
     at(93, [40, 80]),
     at(88, [80, 160]),
     at(93, [20, 20]),
@@ -133,7 +133,7 @@ impl Run {
         let tick = period.tick;
         match tick {
             20 => period.send(b"FRF X\n"),
-            400 => period.send(b"SPA 1 0x19001900 1\n"),
+            600 => period.send(b"SPA 1 0x19001900 1\n"),
             6_800 | 14_000 => self.ask(period, Asked::Rest),
             7_000 => {
                 period.send(b"RTR 1\nDRC 1 X 1 2 X 2 3 X 3 4 Y 1 5 Y 2 6 W 1 7 1 73 8 0 204\n")

@@ -4,7 +4,7 @@
 use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
-use commissioning::tuning::{Gains, Margins, PivotGains, Plant, margins};
+use commissioning::tuning::{Gains, Margins, PLACES, Plant, margins};
 use desk::commission::Done;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::StageParameters;
@@ -15,8 +15,6 @@ use tripivot::attended::EachTick;
 
 pub type Figures = Vec<(&'static str, f64)>;
 
-/// Places of the true plant at which loops are judged, track radii.
-pub const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.7, 0.0], [-0.35, 0.6], [-0.35, -0.6]];
 /// Resonances over this are beyond what any servo here reaches.
 const REACHED_HZ: f64 = 1_500.0;
 
@@ -229,10 +227,7 @@ pub fn plants(machine: &StageParameters) -> (Vec<Plant>, [Electrical; 3], Chain)
     for drive in &mut electrical {
         drive.resistance_ohm *= 1.0 + plant.winding.resistance_per_k * plant.winding.start_k;
     }
-    let places = PLACES.iter().filter_map(|[x, y]| Place::new(*x, *y));
-    let plants = places
-        .map(|place| Plant::from_model(&electrical, &chain, &place, &Timing::STAGE))
-        .collect();
+    let plants = Plant::at_places(&electrical, &chain, &PLACES, &Timing::STAGE);
     (plants, electrical, chain)
 }
 
@@ -244,21 +239,9 @@ pub fn at_worst(plants: &[Plant], gains: &Gains) -> Margins {
     all.reduce(Margins::worse).expect("a plant")
 }
 
-/// A controller's gains.
-pub fn gains_of(parameters: &Parameters) -> Gains {
-    let servo = &parameters.servo;
-    Gains {
-        pivots: [0, 1, 2].map(|i| PivotGains {
-            gains: servo.gains[i],
-            filters: servo.filters[i],
-        }),
-        scheduled_inertia_kg_m2: servo.scheduled_inertia_kg_m2,
-    }
-}
-
 /// The controller's gains before the machine's own plant.
 pub fn gains(machine: &StageParameters, parameters: &Parameters) -> Figures {
     let (plants, ..) = plants(machine);
-    let found = at_worst(&plants, &gains_of(parameters));
+    let found = at_worst(&plants, &Gains::of(parameters));
     vec![("ms true", found.ms), ("s30 true", found.rejection)]
 }

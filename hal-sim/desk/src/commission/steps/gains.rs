@@ -9,7 +9,7 @@ use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
 use crate::record::RecordError;
-use commissioning::tuning::Gains;
+use commissioning::tuning::{Gains, rest_stiffness};
 
 /// Gains that a share of 1 stands for: position 1/s, velocity V s/rad, integral V/rad.
 const WHOLE: [f64; 3] = [400.0, 40.0, 14_000.0];
@@ -47,15 +47,10 @@ fn set(bench: &mut Bench<'_>, share: f64) -> Result<(), CommissionError> {
 const WIDE_COUNTS: f64 = 100.0;
 const USUAL_COUNTS: f64 = 2.0;
 
-/// What rest leaves of whole gains; of a share of them more, so that the loop at rest is the same.
-const REST: f64 = 0.1;
-
 /// The same for gains that were found.
 pub(super) fn rest_for(bench: &mut Bench<'_>, gains: &Gains) -> Result<(), CommissionError> {
-    let least = (gains.pivots.iter())
-        .map(|pivot| pivot.gains.velocity_v_s_rad)
-        .fold(f64::INFINITY, f64::min);
-    Ok(bench.set(&[(id::REST_STIFFNESS, at_rest(least / WHOLE[1]))])?)
+    let stiffness = rest_stiffness(gains.least_velocity_v_s_rad());
+    Ok(bench.set(&[(id::REST_STIFFNESS, stiffness)])?)
 }
 
 /// First frequencies of the filters of all pivots: 0 is none; and the inertia that gains are scheduled by, 0: they are not.
@@ -87,7 +82,7 @@ pub(in crate::commission) fn settle_widely(bench: &mut Bench<'_>) -> Result<(), 
 }
 
 fn at_rest(share: f64) -> f64 {
-    (REST / share).clamp(REST, 1.0)
+    rest_stiffness(share * WHOLE[1])
 }
 
 pub(super) fn run(

@@ -6,27 +6,16 @@ use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::known::Known;
-use crate::commission::measured_loop::{MOST_MS, MeasuredLoop, plot};
+use crate::commission::measured_loop::{MeasuredLoop, plot};
 use crate::commission::servo_gains;
 use crate::record::RecordError;
 use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::DriveModel;
 use commissioning::record::Timing;
-use commissioning::tuning::{Gains, Limits, Margins, Plant, margins, tune};
+use commissioning::tuning::{Gains, Limits, MOST_MS, PLACES, Plant, SEARCHED, tune};
 
-/// Places of the model, track radii: in the middle, and a ring's width from the rim, once towards each guide.
-const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.7, 0.0], [-0.35, 0.6], [-0.35, -0.6]];
-/// How many of them the search looks at; the others differ by the load's centre alone, and are looked at after it.
-const SEARCHED: usize = 2;
-/// What is sought on the model: a little less than what is asked of the loops. A resonance may be high where its phase is good: Ms tells.
-const LIMITS: Limits = Limits {
-    ms: 1.9,
-    resonance_peak: 10.0,
-    share: 1.0,
-};
-/// What gains are lowered by where they ask too much of a measured loop, and how often at most.
-const LESS: f64 = 0.92;
-const MOST_LESS: usize = 20;
+/// What gains are lowered by that the stage does not bear.
+const NOT_BORNE: f64 = 0.92 * 0.92;
 /// Moves that have to come to their end, and how long each may take, s.
 const MOVES: [&str; 4] = [
     "MOV X 30 Y 30 W 90",
@@ -104,7 +93,7 @@ fn best(
                 if best.is_some() {
                     break;
                 }
-                gains = gains.slowed(LESS * LESS);
+                gains = gains.slowed(NOT_BORNE);
                 continue;
             }
         };
@@ -135,11 +124,9 @@ fn candidates(known: &Known, model: &DriveModel, former: &Gains, radius_m: f64) 
         ..model.mechanical.chain
     };
     let plants = |places: &[[f64; 2]]| -> Vec<Plant> {
-        (places.iter())
-            .filter_map(|[x, y]| Place::new(*x, *y))
-            .map(|place| Plant::from_model(&model.electrical, &chain, &place, &Timing::STAGE))
-            .chain(measured_plants(known, model, radius_m))
-            .collect()
+        let mut plants = Plant::at_places(&model.electrical, &chain, places, &Timing::STAGE);
+        plants.extend(measured_plants(known, model, radius_m));
+        plants
     };
     let centre = Place::centre();
     let tuned = tune(
@@ -148,29 +135,15 @@ fn candidates(known: &Known, model: &DriveModel, former: &Gains, radius_m: f64) 
         &chain.resonances_hz(&centre),
         chain.inertia(&centre)[(0, 0)],
         &Timing::STAGE,
-        &LIMITS,
+        &Limits::ON_MODEL,
     );
     let all = plants(&PLACES);
     let mut candidates: Vec<_> = (tuned.ok().map(|tuned| tuned.gains).into_iter())
         .chain([*former])
-        .filter_map(|gains| slowed_until_sound(&all, gains))
+        .filter_map(|gains| gains.slowed_until_sound(&all, MOST_MS, Timing::STAGE.tick_s))
         .collect();
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-    candidates.into_iter().map(|(_, gains)| gains).collect()
-}
-
-/// The fastest of slower and slower gains that is stable and keeps Ms on all plants, and its rejection.
-fn slowed_until_sound(plants: &[Plant], mut gains: Gains) -> Option<(f64, Gains)> {
-    for _ in 0..MOST_LESS {
-        let all = (plants.iter())
-            .map(|plant| margins(plant, &gains, Timing::STAGE.tick_s))
-            .reduce(Margins::worse)?;
-        if all.is_stable && all.ms <= MOST_MS {
-            return Some((all.rejection, gains));
-        }
-        gains = gains.slowed(LESS);
-    }
-    None
+    candidates.sort_by(|a, b| a.1.rejection.total_cmp(&b.1.rejection));
+    candidates.into_iter().map(|(gains, _)| gains).collect()
 }
 
 fn measured_plants<'a>(
