@@ -135,6 +135,31 @@ fn what_does_not_go_together_is_refused() {
     assert_eq!(bench.say("SPA?\n"), before);
 }
 
+/// Of each pivot four, whatever they are: sines of ripple, the gear's error, the guides.
+#[test]
+fn a_tick_has_time_for_so_many_sines() {
+    const RIPPLES: [&str; 4] = ["0x54500A01", "0x54500A04", "0x54500A07", "0x54500A0A"];
+    let mut bench = advanced();
+    for id in RIPPLES {
+        assert_eq!(bench.error_after(&format!("SPA 1 {id} 0.01")), "0");
+    }
+    // Gear, friction along the guides, stiffness across them.
+    for one_more in [
+        "0x54500A0C 20",
+        "0x54500706 1",
+        "0x54500708 30 1 0x54500709 50",
+    ] {
+        assert_eq!(
+            bench.error_after(&format!("SPA 1 {one_more}")),
+            "17",
+            "{one_more}"
+        );
+    }
+    assert_eq!(bench.error_after("SPA 1 0x54500A01 0 1 0x54500A04 0"), "0");
+    assert_eq!(bench.error_after("SPA 1 0x54500A0C 20 1 0x54500706 1"), "0");
+    assert_eq!(bench.error_after("SPA 1 0x54500A01 0.01"), "17");
+}
+
 #[test]
 fn level_and_state_that_setting_needs() {
     for parameter in settable() {

@@ -26,6 +26,10 @@ fn a_machine_is_printed_changed_and_run() {
     let printed = tripivot(&folder, &["machine"]).stdout;
     let text = String::from_utf8(printed).unwrap();
     assert!(text.contains("platform_mass_kg = 3.0"), "{text}");
+    // The reference stage has every imperfection, a kind one has not.
+    assert!(!text.contains("guide_friction = false"), "{text}");
+    let kind = String::from_utf8(tripivot(&folder, &["machine", "--kind"]).stdout).unwrap();
+    assert!(kind.contains("guide_friction = false"), "{kind}");
     fs::write(
         folder.join("own.toml"),
         text.replace("platform_mass_kg = 3.0", "platform_mass_kg = 4.5"),
@@ -71,6 +75,12 @@ fn an_unknown_machine_is_not_driven() {
     assert_eq!(run.status.code(), Some(1), "{run:?}");
     let said = String::from_utf8(run.stderr).unwrap();
     assert!(said.contains("4005"), "{said}");
+    // Told all of it, wires and zeros among it, it drives.
+    let run = tripivot(
+        &folder,
+        &["run", "step.gcs", "--unknown", "1", "--told", "--quiet"],
+    );
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
     let both = tripivot(
         &folder,
         &["machine", "--unknown", "1", "--machine", "first.toml"],
