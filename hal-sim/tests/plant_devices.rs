@@ -567,6 +567,41 @@ fn analog_inputs_follow_current_and_supply() {
     assert_eq!(stage.analog().0[0], expected);
 }
 
+/// Twice the mains' frequency, 0.1 V to each side; without it the supply stands still, and so it does behind a diode that nothing draws
+/// through.
+#[test]
+fn a_supply_ripples() {
+    let supplies = |supply_ripple: bool, bus: bool| -> Vec<i32> {
+        let mut parameters = StageParameters::REFERENCE;
+        parameters.plant.imperfections = Imperfections {
+            supply_ripple,
+            bus,
+            ..Imperfections::NONE
+        };
+        let mut stage = Stage::new(&parameters);
+        let period = |_| {
+            stage.advance_period([BridgeState::RESET; 3]);
+            i32::from(stage.analog().1)
+        };
+        (0..20_000).map(period).collect()
+    };
+    let counts_of = |volts: f64| (volts / 20.0 / 3.3 * 4096.0).round() as i32;
+    let ends = |all: &[i32]| [all.iter().min().copied(), all.iter().max().copied()];
+    assert_eq!(ends(&supplies(false, false)), [Some(counts_of(48.0)); 2]);
+    let rippling = supplies(true, false);
+    let expected = [counts_of(47.9), counts_of(48.1)].map(Some);
+    assert_eq!(ends(&rippling), expected);
+    let rises = rippling.windows(2).filter(|two| {
+        let mean = counts_of(48.0);
+        two[0] <= mean && two[1] > mean
+    });
+    assert_eq!(rises.count(), 100);
+    let last = &supplies(true, true)[1_000..];
+    let [lowest, highest] = ends(last);
+    assert_eq!(lowest, highest);
+    assert!(lowest > Some(counts_of(47.5)), "{lowest:?}");
+}
+
 /// A bridge turns the motor that its leads go to, the way round that they are, and sees the current that it gives; a port has the frames of
 /// the encoder that is plugged into it.
 #[test]

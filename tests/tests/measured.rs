@@ -4,7 +4,9 @@ use hal_sim::rig::run::{RunOptions, run};
 use hal_sim::rig::script::Script;
 use std::collections::BTreeSet;
 use std::path::Path;
-use tests::measured::{Page, SECTIONS, cost_differences, differences, figures, path};
+use tests::measured::{
+    Page, SECTIONS, cost_differences, differences, figures, path, plant_path, plant_text,
+};
 
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -25,6 +27,13 @@ fn the_page_is_of_the_table() {
         text == page.text(),
         "words differ from the table's; write it again: measured --page"
     );
+}
+
+#[test]
+fn the_machines_description_has_the_pages_table() {
+    let text = std::fs::read_to_string(plant_path(root())).expect("the description");
+    let with_table = plant_text(&text, &page()).expect("a table, and its place");
+    assert!(text == with_table, "write it again: measured --page");
 }
 
 #[test]

@@ -1,7 +1,5 @@
 //! How the simulated hardware breaks.
 
-use core::f64::consts::TAU;
-
 use firmware::drivers::power_stage::CURRENT_A_PER_COUNT;
 
 use super::injection::{Injection, MISSED_EVERY, Other, second};
@@ -74,10 +72,8 @@ impl Injection {
             Self::ResistorStuckOn if age == 0 => {
                 (host.stage).set_brake_resistor_fault(Some(BrakeResistorFault::StuckOn));
             }
-            Self::SupplyRipple(amplitude_v, hz) => {
-                let nominal_v = 48.0;
-                let turns = hz * TICK_S * age as f64;
-                (host.stage).set_supply_v(nominal_v + amplitude_v * (TAU * turns).sin());
+            Self::SupplyRipple(ripple_v, hz) if age == 0 => {
+                host.stage.set_supply_ripple(ripple_v, hz);
             }
             Self::Drift(rad_s) => encoder.set_offset(rad_s * TICK_S * age as f64),
             // Off by nothing where it was when it broke: the angle since then is the plant's.
@@ -128,7 +124,8 @@ impl Injection {
             | Self::LoadLost
             | Self::ExchangedLines
             | Self::ResistorOpen
-            | Self::ResistorStuckOn => {}
+            | Self::ResistorStuckOn
+            | Self::SupplyRipple(..) => {}
         }
     }
 

@@ -130,6 +130,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("supply_gain", 0.5, 2.0),
     ("current_sampled_s", 0.0, 1e-3),
     ("source_ohm", 1e-3, 10.0),
+    ("ripple_v", 0.0, 5.0),
+    ("ripple_hz", 0.0, 1e4),
     ("diode_v", 0.0, 2.0),
     ("capacitor_f", 1e-4, 1.0),
     ("brake_resistor_ohm", 0.1, 1e3),

@@ -126,6 +126,8 @@ fn draw_losses(machine: &mut StageParameters, random: &mut Random) {
     let heat = &mut machine.bridge.heat;
     heat.thermal_resistance_k_w *= random.between(0.7, 1.3);
     heat.air_c = random.between(20.0, 50.0);
+    machine.bus.ripple_v = random.between(0.02, 0.15);
+    machine.bus.ripple_hz = if random.once_in(2) { 100.0 } else { 120.0 };
 }
 
 fn phases(random: &mut Random) -> [f64; AXES] {

@@ -1,4 +1,4 @@
-//! Measures what `hal-sim/MEASURED.md` reports, and writes it: `cargo run --release -p tests --bin measured`.
+//! Measures what `hal-sim/MEASURED.md` reports, and writes it (and the table in `hal-sim/PLANT.md` that is from it): `cargo run --release -p tests --bin measured`.
 //!
 //! `--only NAME` (again for several) leaves the other sections as they are; `--missing` runs those that have not been run yet;
 //! `--short` takes short forms; `--list` says what there is; `--page` writes the page again from what it holds. Needs bash, and
@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use tests::measured::{Group, Page, SECTIONS, Section, path, prepare, run};
+use tests::measured::{Group, Page, SECTIONS, Section, path, plant_path, plant_text, prepare, run};
 
 const USAGE: &str = "measured [--only NAME]... [--missing] [--short] [--list] [--page]";
 
@@ -105,7 +105,7 @@ fn measure(root: &Path, options: &Options) -> std::io::Result<u32> {
             Ok(measured) => {
                 println!("{}{}\n", measured.figures, measured.conditions);
                 page.set(section, measured);
-                std::fs::write(&path, page.text())?;
+                write(root, &page)?;
             }
             Err(error) => {
                 eprintln!("{}: {error}", section.name);
@@ -113,8 +113,18 @@ fn measure(root: &Path, options: &Options) -> std::io::Result<u32> {
             }
         }
     }
-    std::fs::write(&path, page.text())?;
+    write(root, &page)?;
     Ok(failed)
+}
+
+/// The page, and the table that the simulated machine's description has from it.
+fn write(root: &Path, page: &Page) -> std::io::Result<()> {
+    std::fs::write(path(root), page.text())?;
+    let plant = plant_path(root);
+    match plant_text(&std::fs::read_to_string(&plant)?, page) {
+        Some(text) => std::fs::write(plant, text),
+        None => Ok(()),
+    }
 }
 
 fn is_image_built(root: &Path) -> bool {

@@ -15,15 +15,22 @@ pub struct BusParameters {
     pub capacitor_f: f64,
     /// Brake resistor, ohm.
     pub brake_resistor_ohm: f64,
+    /// What the supply's voltage ripples by to each side, V.
+    pub ripple_v: f64,
+    /// How often, Hz: twice the mains' frequency.
+    pub ripple_hz: f64,
 }
 
 impl BusParameters {
-    /// Capacitor and brake resistor of the reference board; 50 mohm of source and cable, and 0.5 V of a Schottky diode, as makers state.
+    /// Capacitor and brake resistor of the reference board; 50 mohm of source and cable, 0.5 V of a Schottky diode and a ripple of 0.2 V
+    /// from lowest to highest, as makers state.
     pub const REFERENCE: Self = Self {
         source_ohm: 0.05,
         diode_v: 0.5,
         capacitor_f: BUS.capacitor_f,
         brake_resistor_ohm: BUS.resistor_ohm,
+        ripple_v: 0.1,
+        ripple_hz: 100.0,
     };
 }
 
@@ -37,6 +44,15 @@ pub enum BrakeResistorFault {
 }
 
 impl BusParameters {
+    /// What a supply gives at an instant, V.
+    #[must_use]
+    pub fn source_v(&self, supply_v: f64, at_s: f64) -> f64 {
+        if self.ripple_v == 0.0 {
+            return supply_v;
+        }
+        supply_v + self.ripple_v * (core::f64::consts::TAU * self.ripple_hz * at_s).sin()
+    }
+
     /// The bus of a supply that gives and takes any current: all that makes it sag is what the brake resistor draws through the source's
     /// resistance, V.
     #[must_use]

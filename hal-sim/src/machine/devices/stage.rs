@@ -120,6 +120,8 @@ pub struct Stage {
     /// Where the supply is not ideal; `source_v` feeds it.
     bus: Option<Bus>,
     bus_parameters: BusParameters,
+    /// The supply, and what it gives in this period, with its ripple.
+    supply_v: f64,
     source_v: f64,
     /// Its pin, and what is wrong with it.
     brake_resistor_is_on: bool,
@@ -162,7 +164,15 @@ impl Stage {
             period_s: parameters.period_s,
             bridge,
             bus: (flags.bus).then(|| Bus::new(parameters.bus, parameters.plant.supply_v)),
-            bus_parameters: parameters.bus,
+            bus_parameters: BusParameters {
+                ripple_v: if flags.supply_ripple {
+                    parameters.bus.ripple_v
+                } else {
+                    0.0
+                },
+                ..parameters.bus
+            },
+            supply_v: parameters.plant.supply_v,
             source_v: parameters.plant.supply_v,
             brake_resistor_is_on: false,
             brake_resistor_fault: None,
@@ -197,6 +207,8 @@ impl Stage {
     /// Runs one control period: the pins as the last call left them until the tick's duty acts, `pins` from there on.
     pub fn advance_period(&mut self, pins: [BridgeState; AXES]) {
         self.periods += 1;
+        let now_s = self.periods as f64 * self.period_s;
+        self.source_v = self.bus_parameters.source_v(self.supply_v, now_s);
         for part in OLD_DRIVE {
             self.substep(part);
         }
@@ -244,10 +256,17 @@ impl Stage {
 
     /// Changes the supply, V, from now on.
     pub fn set_supply_v(&mut self, supply_v: f64) {
+        self.supply_v = supply_v;
         self.source_v = supply_v;
         if self.bus.is_none() {
             self.set_bus_v(supply_v);
         }
+    }
+
+    /// Changes the supply's ripple, V to each side and Hz, from the next period on.
+    pub const fn set_supply_ripple(&mut self, ripple_v: f64, ripple_hz: f64) {
+        self.bus_parameters.ripple_v = ripple_v;
+        self.bus_parameters.ripple_hz = ripple_hz;
     }
 
     /// The analog inputs, to be changed from now on.

@@ -65,6 +65,8 @@ pub struct Imperfections {
     pub winding_heat: bool,
     /// A track that becomes warm, and larger.
     pub track_heat: bool,
+    /// A supply that ripples at twice the mains' frequency.
+    pub supply_ripple: bool,
     /// A bus behind a diode, with a capacitor. Off, the supply gives and takes any current.
     pub bus: bool,
     /// Bridges that trip, that become too hot, and that need time to wake up.
@@ -103,6 +105,7 @@ impl Imperfections {
         floor_vibration: false,
         winding_heat: false,
         track_heat: false,
+        supply_ripple: false,
         bus: false,
         bridge_limits: false,
         pwm_quantisation: false,
@@ -143,6 +146,7 @@ impl Imperfections {
         floor_vibration: true,
         winding_heat: true,
         track_heat: true,
+        supply_ripple: true,
         bus: true,
         bridge_limits: true,
         ..Self::CALIBRATED
@@ -158,7 +162,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 30] = [
+pub const NAMED: [Named; 31] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -186,6 +190,7 @@ pub const NAMED: [Named; 30] = [
     named("floor-vibration", |on| &mut on.floor_vibration),
     named("winding-heat", |on| &mut on.winding_heat),
     named("track-heat", |on| &mut on.track_heat),
+    named("supply-ripple", |on| &mut on.supply_ripple),
     named("bus", |on| &mut on.bus),
     named("bridge-limits", |on| &mut on.bridge_limits),
     named("pwm-quantisation", |on| &mut on.pwm_quantisation),
