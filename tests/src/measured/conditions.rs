@@ -39,7 +39,7 @@ impl Conditions {
     }
 }
 
-/// The commit, and whether anything but the page itself differs from it.
+/// The commit, and whether anything but what is written differs from it.
 fn commit(root: &Path) -> String {
     let Some(hash) = said(root, "git", &["rev-parse", "--short=9", "HEAD"]) else {
         return "no commit".to_owned();
@@ -51,6 +51,7 @@ fn commit(root: &Path) -> String {
         "--",
         ".",
         ":!hal-sim/MEASURED.md",
+        ":!hal-sim/PLANT.md",
     ];
     match said(root, "git", &status) {
         Some(changes) if changes.is_empty() => format!("commit {hash}"),
