@@ -3,6 +3,7 @@
 //! Each machine is referenced, moved by some mm and left alone. After a second at rest every tick of the plant's true pose is looked
 //! at. `SECONDS=600` is ten minutes, the form that is published; without it it is 20 s.
 
+use firmware::control::SubdivisionTable;
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues};
@@ -178,6 +179,9 @@ fn watch(case: &Case, seconds: u64) -> Quiet {
     for _ in 0..20 {
         tick(&mut host, &mut record, &mut commands);
     }
+    let tables = (parameters.subdivision.each_ref()).map(SubdivisionTable::new);
+    assert!(commands.send(Command::Subdivide(tables)).is_ok(), "room");
+    tick(&mut host, &mut record, &mut commands);
     assert!(commands.send(Command::Reference).is_ok(), "room");
     tick(&mut host, &mut record, &mut commands);
     for _ in 0..4_000 {

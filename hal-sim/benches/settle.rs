@@ -4,6 +4,7 @@
 //! friction with presliding and stiction among them. Times are counted from the tick that takes the command: to the profile's end,
 //! to where every pivot comes to stay within the window of +-2 encoder LSB, and to where the controller says so, a dwell later.
 
+use firmware::control::SubdivisionTable;
 use firmware::motion::{Constraints, Position, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
@@ -239,6 +240,9 @@ fn moves(case: &Case) -> Rest {
         record: TickRecord::default(),
         last: Snapshot::default(),
     };
+    bench.run(20);
+    let tables = (parameters.subdivision.each_ref()).map(SubdivisionTable::new);
+    bench.send(Command::Subdivide(tables));
     bench.run(20);
     bench.send(Command::Reference);
     bench.run(4_000);

@@ -1,6 +1,7 @@
 //! A sine on an encoder of a stage that turns slowly, frequency by frequency; a push on one at rest.
 
 use super::matrix::Complex;
+use firmware::control::SubdivisionTable;
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, TickQueues};
@@ -109,6 +110,8 @@ pub fn push(stage: &StageParameters, parameters: &Parameters, place_mm: [f64; 2]
 struct Bench<'a, 'q> {
     host: Host,
     record: TickRecord,
+    /// Errors of the encoders within a period of their scales, as the controller is told.
+    tables: [SubdivisionTable; 3],
     queues: &'a mut TickQueues<'q>,
 }
 
@@ -124,6 +127,7 @@ impl<'a, 'q> Bench<'a, 'q> {
         Self {
             host,
             record: TickRecord::default(),
+            tables: (parameters.subdivision.each_ref()).map(SubdivisionTable::new),
             queues,
         }
     }
@@ -140,6 +144,9 @@ impl<'a, 'q> Bench<'a, 'q> {
     }
 
     fn referenced(&mut self, commands: &mut CommandQueues<'_>) -> [i64; 3] {
+        self.run(20);
+        let tables = Command::Subdivide(self.tables);
+        assert!(commands.send(tables).is_ok(), "room");
         self.run(20);
         assert!(commands.send(Command::Reference).is_ok(), "room");
         self.run(2_000);
