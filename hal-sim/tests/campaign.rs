@@ -192,7 +192,8 @@ fn a_stage_that_could_rest_has_to() {
 fn the_watchdog_has_to_cut_in_time() {
     let good = noticed(|injection| *injection == Injection::LoopStands);
     let cut = good.cut.expect("the watchdog bites");
-    assert!((8..=10).contains(&(cut - good.scenario.at)), "{good}");
+    // 0.39 to 0.49 ms after the last tick, which was the one before, and seen in the tick behind it.
+    assert!((7..=10).contains(&(cut - good.scenario.at)), "{good}");
     let late = Outcome {
         cut: Some(good.scenario.at + 13),
         ..good.clone()

@@ -314,6 +314,59 @@ fn bursts_of_bad_frames_are_told_as_an_event() {
     assert_eq!(bench.fault(), None);
 }
 
+/// A reading that steps as no pivot moves is told once, by how much; what a pivot may have moved is not, and no motion is.
+#[test]
+fn an_encoder_that_slips_is_told() {
+    let told_after = |slip_rad: f64, bad_frames: u32| {
+        let mut bench = Bench::ready();
+        bench.say("MOV X 40 W 180\n");
+        bench.run(3_000);
+        let encoder = |bench: &mut Bench, fault: Option<EncoderFault>, offset_rad: f64| {
+            let encoder = &mut bench.rig.front.stage.encoders[1];
+            encoder.set_fault(fault);
+            encoder.set_offset(offset_rad);
+        };
+        if bad_frames > 0 {
+            encoder(&mut bench, Some(EncoderFault::StuckHigh), 0.0);
+            bench.run(bad_frames);
+        }
+        encoder(&mut bench, None, slip_rad);
+        bench.run(20_000);
+        assert_eq!(bench.fault(), None);
+        let events = bench.say("EVT?\n");
+        let mut lines = events.lines().filter(|line| line.contains("stepped"));
+        let (line, more) = (lines.next().map(str::to_owned), lines.next());
+        assert_eq!(more, None);
+        line
+    };
+    for (slip_rad, bad_frames) in [
+        (12e-6, 0),
+        (-12e-6, 0),
+        (100e-6, 0),
+        (50e-6, 1),
+        (150e-6, 4),
+        (-1.5e-3, 4),
+    ] {
+        let line = told_after(slip_rad, bad_frames).expect("an event");
+        let told_urad: f64 = (line.split_once("stepped by ").expect("how far").1)
+            .split_once(" urad, pivot 2: it slipped, or a blow")
+            .and_then(|(number, _)| number.parse().ok())
+            .expect("a number");
+        // Noise, and what a pivot does meanwhile at 800 rad/s^2.
+        let ticks = bad_frames + 1;
+        let about_urad = 2.0 + 2.0 * f64::from(ticks * (ticks + 1) / 2);
+        let off_urad = told_urad - slip_rad * 1e6;
+        assert!(
+            off_urad.abs() < about_urad,
+            "{slip_rad} {bad_frames}: {line}"
+        );
+    }
+    for (slip_rad, bad_frames) in [(0.0, 0), (0.0, 4), (4e-6, 0), (60e-6, 4)] {
+        let line = told_after(slip_rad, bad_frames);
+        assert_eq!(line, None, "{slip_rad} {bad_frames}");
+    }
+}
+
 /// Where a parameter wants it, the emergency stop is tried after each start before anything drives.
 #[test]
 fn nothing_drives_before_the_emergency_stop_was_pressed_where_that_is_asked_for() {

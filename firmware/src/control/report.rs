@@ -52,6 +52,7 @@ impl State {
             encoder_faults: self.encoders.each_ref().map(Encoder::unusable),
             encoder_warnings: self.encoders.each_ref().map(Encoder::warning),
             bridged_frames: self.encoders.each_ref().map(Encoder::bridged_frames),
+            slipped: self.encoders.each_ref().map(Encoder::slipped),
             pivots: *pivots,
             // A difference that does not fit is a fault, and then the target is what is measured.
             pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),

@@ -44,6 +44,8 @@ pub struct Snapshot {
     pub encoder_warnings: [bool; 3],
     /// Bad frames of each encoder that have been bridged so far, wrapping.
     pub bridged_frames: [u16; 3],
+    /// Sums of the steps of each encoder that no pivot makes, 2^-32 turns, wrapping.
+    pub slipped: [i32; 3],
     /// Measured pivot angles; valid once referenced.
     pub pivots: [Angle; 3],
     /// Measured minus setpoint of each pivot, 2^-32 turns; 0 while the servo is off.

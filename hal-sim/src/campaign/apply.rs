@@ -98,6 +98,9 @@ impl Injection {
                 host.stage.analog_inputs().current_offset_counts[axis] +=
                     amperes / CURRENT_A_PER_COUNT;
             }
+            Self::Slip(rad) if age == 0 => encoder.set_offset(rad),
+            Self::CurrentStuck if age == 0 => host.stage.stick_current_sensor(axis),
+            Self::SupplyStuck if age == 0 => host.stage.stick_supply_sensor(),
             Self::SupplyBias(share) if age == 0 => {
                 host.stage.analog_inputs().supply_gain *= share;
             }
@@ -125,7 +128,10 @@ impl Injection {
             | Self::ExchangedLines
             | Self::ResistorOpen
             | Self::ResistorStuckOn
-            | Self::SupplyRipple(..) => {}
+            | Self::SupplyRipple(..)
+            | Self::Slip(_)
+            | Self::CurrentStuck
+            | Self::SupplyStuck => {}
         }
     }
 

@@ -7,6 +7,9 @@ use crate::random::Random;
 /// Reading off by less is bridged like bad frames and then taken for motion.
 const SMALLEST_JUMP: f64 = 60_000.0;
 const LARGEST_JUMP: f64 = 30_000_000.0;
+/// What is more than a pivot moves with what its acceleration and noise may add; what is less than a jump.
+const SMALLEST_SLIP_RAD: f64 = 12e-6;
+const LARGEST_SLIP_RAD: f64 = 110e-6;
 
 impl Injection {
     /// One of all, as likely each, of a size that fits the machine.
@@ -87,7 +90,10 @@ impl Injection {
             40 => Self::ExchangedLines,
             41 => Self::Gain(random.between(3.0, 12.0)),
             42 => Self::ResistorOpen,
-            _ => Self::ResistorStuckOn,
+            43 => Self::ResistorStuckOn,
+            44 => Self::Slip(random.between(SMALLEST_SLIP_RAD, LARGEST_SLIP_RAD) * random.sign()),
+            45 => Self::CurrentStuck,
+            _ => Self::SupplyStuck,
         }
     }
 }

@@ -245,7 +245,7 @@ impl Injection {
             Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, NEARLY_FOLLOWING, STILL],
             Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING, NEARLY_FOLLOWING],
             Self::DamagedSettings => &[DAMAGED],
-            Self::Warning | Self::QueueFull => &const { [event(Effect::AtOnce)] },
+            Self::Warning | Self::QueueFull | Self::Slip(_) => &const { [event(Effect::AtOnce)] },
             Self::LoopStands | Self::Crash => {
                 &const {
                     [Cause {
@@ -255,11 +255,13 @@ impl Injection {
                 }
             }
             Self::HostSilent => &const { [event(Effect::Silence)] },
+
             Self::FewBadFrames(_) | Self::SupplyRipple(..) => &[],
             Self::Bursts(..) => &const { [event(Effect::OftenBad)] },
             Self::SupplyHigh(_) => &[SUPPLY_HIGH, NEARLY_SUPPLY_HIGH],
             Self::ResistorHot(_) => &[RESISTOR_HOT],
-            Self::ResistorOpen | Self::ResistorStuckOn => {
+            // A converter that shows no drop is found by the same test.
+            Self::ResistorOpen | Self::ResistorStuckOn | Self::SupplyStuck => {
                 &[RESISTOR_DEAD, MAYBE_RESISTOR_DEAD, RISES, MAYBE_RISES]
             }
             Self::BitErrors(_) => {
@@ -295,6 +297,7 @@ impl Injection {
             | Self::Scale(_)
             | Self::CurrentBias(_)
             | Self::SupplyBias(_)
+            | Self::CurrentStuck
             | Self::Fading(_)
             | Self::Friction(_)
             | Self::GuideJam
@@ -306,6 +309,7 @@ impl Injection {
         let told = match self {
             Self::Warning => Some("encoder warns"),
             Self::Bursts(..) => Some("bad encoder frames bridged"),
+            Self::Slip(_) => Some("encoder stepped"),
             Self::HostSilent => Some("no host heard"),
             Self::LoopStands => Some("start by the watchdog"),
             Self::Crash => Some("start by a panic"),

@@ -96,6 +96,12 @@ pub enum Injection {
     ResistorOpen,
     /// The switch of the brake resistor has failed short.
     ResistorStuckOn,
+    /// An encoder slips by this, rad, once: no fault, but it is told.
+    Slip(f64),
+    /// The converter of a current repeats its last sample.
+    CurrentStuck,
+    /// The converter of the supply repeats its last sample.
+    SupplyStuck,
 }
 
 /// What breaks in the same tick as an encoder falls silent.
@@ -112,7 +118,7 @@ pub enum Other {
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 44] = [
+pub const NAMES: [&str; 47] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -157,6 +163,9 @@ pub const NAMES: [&str; 44] = [
     "gain too high",
     "brake resistor open",
     "resistor stuck on",
+    "encoder slips",
+    "current sensor stuck",
+    "supply sensor stuck",
 ];
 
 /// One of so many ticks does not come.
@@ -234,6 +243,9 @@ impl Injection {
             Self::Gain(_) => 41,
             Self::ResistorOpen => 42,
             Self::ResistorStuckOn => 43,
+            Self::Slip(_) => 44,
+            Self::CurrentStuck => 45,
+            Self::SupplyStuck => 46,
         }
     }
 

@@ -54,4 +54,7 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     "nothing: at rest it is not in force or rings less than the threshold",
     "nothing while it is not needed: it is found at servo on",
     "a thermal fuse at the resistor: it is found at servo on only",
+    SECOND_HEAD,
+    "a second current sensor, or a sum of currents and the supply's",
+    "a second divider: it is found at servo on only",
 ];

@@ -74,6 +74,7 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         Event::Recovered => bare(21),
         Event::RecoveryGivenUp => bare(22),
         Event::FramesBridged(pivot, count) => (28, [*pivot, 0], [u32::from(*count), 0, 0]),
+        Event::EncoderStepped(pivot, step_rad) => (31, [*pivot, 0], [step_rad.to_bits(), 0, 0]),
         Event::CalibratedTemperature(is_off, over_k) => {
             (29, [u8::from(*is_off), 0], [over_k.to_bits(), 0, 0])
         }
@@ -135,6 +136,7 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         21 => Event::Recovered,
         22 => Event::RecoveryGivenUp,
         28 => Event::FramesBridged(first, a as u16),
+        31 => Event::EncoderStepped(first, f32::from_bits(a)),
         29 => Event::CalibratedTemperature(first != 0, f32::from_bits(a)),
         _ => return None,
     };

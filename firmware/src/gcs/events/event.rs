@@ -47,6 +47,8 @@ pub(in crate::gcs) enum Event {
     Warning(u8, bool),
     /// So many bad frames of an encoder have been bridged since it was told last; pivot from 0.
     FramesBridged(u8, u16),
+    /// The reading of an encoder has stepped by so much, rad, as no pivot does; pivot from 0.
+    EncoderStepped(u8, f32),
     /// Settings were written to flash.
     Stored,
     /// They could not be: the error's number.
@@ -97,6 +99,14 @@ impl fmt::Display for Event {
             Self::Warning(pivot, false) => write!(f, "encoder warns no more, pivot {}", pivot + 1),
             Self::FramesBridged(pivot, count) => {
                 write!(f, "{count} bad encoder frames bridged, pivot {}", pivot + 1)
+            }
+            Self::EncoderStepped(pivot, step_rad) => {
+                let step_urad = step_rad * 1e6;
+                write!(
+                    f,
+                    "encoder stepped by {step_urad:.1} urad, pivot {}: it slipped, or a blow",
+                    pivot + 1
+                )
             }
             Self::HostSilent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
             Self::Stored => f.write_str("settings kept"),

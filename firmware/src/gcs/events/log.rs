@@ -2,6 +2,7 @@
 
 use super::encoding::{event, words};
 use super::event::Event;
+use crate::control::units::UNITS_PER_RAD;
 use crate::fault::Fault;
 use crate::fault_record::{RETAINED_EVENTS, RETAINED_FAULTS, RetainedMemory};
 use crate::mode::Mode;
@@ -20,19 +21,22 @@ pub(in crate::gcs) struct EventLog {
     /// How many of them the retained memory has; `None` before it was looked at.
     retained: Option<u32>,
     last: Observed,
-    bridged: [BridgedFrames; 3],
+    encoders: [EncoderTold; 3],
 }
 
-/// Bridged frames of an encoder as they were told last, and the tick of that.
+/// Bridged frames and steps of an encoder as they were told last, and the ticks of that.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct BridgedFrames {
-    count: u16,
-    tick: u64,
+struct EncoderTold {
+    bridged: u16,
+    slipped: i32,
+    bridged_tick: u64,
+    slipped_tick: u64,
 }
 
-/// Bridged frames that are worth an event: more than a single disturbance makes. And ticks from one event to the next, 10 s.
+/// Bridged frames that are worth an event: more than a single disturbance makes.
 const BRIDGED_FRAMES: u16 = 12;
-const BRIDGED_TICKS: u64 = 200_000;
+/// Ticks from one event of an encoder's line to the next, 10 s.
+const AGAIN_TICKS: u64 = 200_000;
 
 /// What of the latest snapshot can be an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,7 +59,7 @@ impl EventLog {
             count: 0,
             retained: None,
             last: Observed::default(),
-            bridged: [BridgedFrames::default(); 3],
+            encoders: [EncoderTold::default(); 3],
         };
         events.add(0, Event::Start(None));
         events
@@ -215,18 +219,36 @@ impl EventLog {
             }
         }
         for pivot in 0..3 {
-            let told = &mut self.bridged[pivot];
-            let count = snapshot.bridged_frames[pivot].wrapping_sub(told.count);
-            if count >= BRIDGED_FRAMES && (told.tick == 0 || tick >= told.tick + BRIDGED_TICKS) {
-                told.count = snapshot.bridged_frames[pivot];
-                told.tick = tick;
-                self.add(tick, Event::FramesBridged(pivot as u8, count));
-            }
+            self.update_encoder(snapshot, pivot);
         }
         for (now, last) in [(now.fault, last.fault), (now.worse, last.worse)] {
             if let Some(fault) = now.filter(|_| now != last) {
                 self.add(fault.tick, Event::Fault(fault));
             }
+        }
+    }
+    fn update_encoder(&mut self, snapshot: &Snapshot, pivot: usize) {
+        let tick = snapshot.tick;
+        let may_tell = |last: u64| last == 0 || tick >= last + AGAIN_TICKS;
+        let told = &mut self.encoders[pivot];
+        let bridged = snapshot.bridged_frames[pivot].wrapping_sub(told.bridged);
+        let slipped = snapshot.slipped[pivot].wrapping_sub(told.slipped);
+        let tells_bridged = bridged >= BRIDGED_FRAMES && may_tell(told.bridged_tick);
+        let tells_slipped = slipped != 0 && may_tell(told.slipped_tick);
+        if tells_bridged {
+            told.bridged = snapshot.bridged_frames[pivot];
+            told.bridged_tick = tick;
+        }
+        if tells_slipped {
+            told.slipped = snapshot.slipped[pivot];
+            told.slipped_tick = tick;
+        }
+        if tells_bridged {
+            self.add(tick, Event::FramesBridged(pivot as u8, bridged));
+        }
+        if tells_slipped {
+            let step_rad = (f64::from(slipped) / UNITS_PER_RAD) as f32;
+            self.add(tick, Event::EncoderStepped(pivot as u8, step_rad));
         }
     }
 }

@@ -129,6 +129,9 @@ pub struct Stage {
     /// Where bridges have limits.
     protection: Option<[Protection; AXES]>,
     analog: AnalogParameters,
+    /// Converters that repeat a sample: of currents, and of the supply.
+    stuck_currents: [Option<u16>; AXES],
+    stuck_supply: Option<u16>,
     /// Inductance of the windings, H, where the currents ripple with the PWM.
     rippling_h: Option<f64>,
     wiring: WiringParameters,
@@ -185,6 +188,8 @@ impl Stage {
                     ..AnalogParameters::EXACT
                 }
             },
+            stuck_currents: [None; AXES],
+            stuck_supply: None,
             rippling_h: (flags.current_ripple).then_some(parameters.plant.inductance_h),
             wiring: parameters.wiring,
             latch_offsets_s: parameters.latch_offsets_s,
@@ -235,11 +240,23 @@ impl Stage {
             .seed
             .wrapping_mul(0x9e37_79b9)
             .wrapping_add(self.periods);
-        (self.analog).sample(
+        let (currents, supply) = (self.analog).sample(
             self.wiring.at_bridges(self.sampled_currents_a()),
             self.bridge.supply_v,
             number,
-        )
+        );
+        let currents = [0, 1, 2].map(|i| self.stuck_currents[i].unwrap_or(currents[i]));
+        (currents, self.stuck_supply.unwrap_or(supply))
+    }
+
+    /// From now on the converter of a bridge's current repeats its sample.
+    pub fn stick_current_sensor(&mut self, bridge: usize) {
+        self.stuck_currents[bridge] = Some(self.analog().0[bridge]);
+    }
+
+    /// From now on the converter of the supply repeats its sample.
+    pub fn stick_supply_sensor(&mut self) {
+        self.stuck_supply = Some(self.analog().1);
     }
 
     /// Currents of the windings as they are when their bridges' inputs are sampled, A.
