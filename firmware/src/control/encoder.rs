@@ -97,7 +97,7 @@ pub struct Encoder {
     repeats: u16,
     /// Frames that have been bridged so far.
     bridged: u16,
-    /// Sum of the steps that no pivot makes, and the last of them, until the rate is back; 2^-32 turns.
+    /// Sum of the steps that no pivot makes, and what the last of them has made of the step, until that is back; 2^-32 turns.
     slipped: i32,
     slip: i32,
 }
@@ -220,43 +220,16 @@ impl Encoder {
         (moved, moved.wrapping_sub(self.step).unsigned_abs())
     }
 
-    /// Takes a reading that may be one of the first, or after a bad one.
+    /// Takes a reading that is unlike the last ones: one of the first, after a bad frame, with a warning, or further than a pivot moves.
     fn accept_reading(&mut self, config: &EncoderConfig, fraction: u32) {
-        let (moved, innovation) = self.moved(fraction);
-        if self.bad_frames == 0
-            && self.good_frames == READY_FRAMES
-            && innovation <= config.max_step_change
-        {
-            self.note_slip(config, moved, 1);
-            self.advance_by(moved);
-            self.step = moved;
-        } else {
-            self.reacquire(config, fraction, moved, innovation);
-        }
-    }
-
-    /// Takes a frame after a bad one, or one of the first.
-    #[cold]
-    fn reacquire(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, innovation: u32) {
         let ticks = u32::from(self.bad_frames) + 1;
-        let allowed = config
-            .max_step_change
-            .saturating_mul(ticks.saturating_mul(ticks));
+        let (moved, innovation) = self.moved(fraction);
         if self.good_frames == 0 {
             self.angle = Angle::from_units(i64::from(fraction));
             self.step = 0;
             self.good_frames = 1;
-        } else if innovation <= allowed {
-            if self.good_frames == READY_FRAMES {
-                self.note_slip(config, moved, ticks);
-            }
-            let change = moved.wrapping_sub(self.step) / ticks as i32;
-            self.advance_by(moved);
-            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the
-            // rate.
-            self.step = self.step.wrapping_add(change);
-            // Which the next frame takes back.
-            self.slip = change;
+        } else if innovation <= config.max_step_change.saturating_mul(ticks * ticks) {
+            self.step_by(config, moved, ticks);
             self.good_frames = (self.good_frames + 1).min(READY_FRAMES);
         } else {
             self.bridge_missing(config, FaultKind::EncoderJump);
@@ -268,20 +241,21 @@ impl Encoder {
         }
     }
 
-    /// Sums up a step that no pivot makes in so many ticks. The step after one that the encoder has made is back to what it was.
-    fn note_slip(&mut self, config: &EncoderConfig, moved: i32, ticks: u32) {
-        let slip = moved.wrapping_sub(self.step);
+    /// Goes where a reading is, so many ticks after the last good one, and sums up what no pivot moves.
+    fn step_by(&mut self, config: &EncoderConfig, moved: i32, ticks: u32) {
         let ordinary = config.max_step_change >> ORDINARY_SHIFT;
-        let most = ordinary.saturating_mul(ticks * (ticks + 1) / 2);
-        if slip.unsigned_abs() <= most {
-            return;
-        }
-        if slip.wrapping_add(self.slip).unsigned_abs() <= most {
-            self.slip = 0;
-        } else {
-            self.slip = slip;
+        let most = ordinary * (ticks * (ticks + 1) / 2);
+        let slip = moved.wrapping_sub(self.step);
+        // The frame after one that has stepped takes back what that has made of the rate.
+        let is_back = self.slip != 0 && slip.wrapping_add(self.slip).unsigned_abs() <= ordinary;
+        if slip.unsigned_abs() > most && !is_back && self.good_frames == READY_FRAMES {
             self.slipped = self.slipped.wrapping_add(slip);
         }
+        // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
+        let change = slip / ticks as i32;
+        self.slip = if is_back { 0 } else { change };
+        self.advance_by(moved);
+        self.step = self.step.wrapping_add(change);
     }
 
     #[inline]

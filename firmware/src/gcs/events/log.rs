@@ -24,19 +24,19 @@ pub(in crate::gcs) struct EventLog {
     encoders: [EncoderTold; 3],
 }
 
-/// Bridged frames and steps of an encoder as they were told last, and the ticks of that.
+/// Bridged frames and steps of an encoder as they were told last, and the lower halves of the ticks of that.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct EncoderTold {
     bridged: u16,
     slipped: i32,
-    bridged_tick: u64,
-    slipped_tick: u64,
+    bridged_tick: u32,
+    slipped_tick: u32,
 }
 
 /// Bridged frames that are worth an event: more than a single disturbance makes.
 const BRIDGED_FRAMES: u16 = 12;
 /// Ticks from one event of an encoder's line to the next, 10 s.
-const AGAIN_TICKS: u64 = 200_000;
+const AGAIN_TICKS: u32 = 200_000;
 
 /// What of the latest snapshot can be an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -229,7 +229,8 @@ impl EventLog {
     }
     fn update_encoder(&mut self, snapshot: &Snapshot, pivot: usize) {
         let tick = snapshot.tick;
-        let may_tell = |last: u64| last == 0 || tick >= last + AGAIN_TICKS;
+        let now = tick as u32;
+        let may_tell = |last: u32| last == 0 || now.wrapping_sub(last) >= AGAIN_TICKS;
         let told = &mut self.encoders[pivot];
         let bridged = snapshot.bridged_frames[pivot].wrapping_sub(told.bridged);
         let slipped = snapshot.slipped[pivot].wrapping_sub(told.slipped);
@@ -237,11 +238,11 @@ impl EventLog {
         let tells_slipped = slipped != 0 && may_tell(told.slipped_tick);
         if tells_bridged {
             told.bridged = snapshot.bridged_frames[pivot];
-            told.bridged_tick = tick;
+            told.bridged_tick = now;
         }
         if tells_slipped {
             told.slipped = snapshot.slipped[pivot];
-            told.slipped_tick = tick;
+            told.slipped_tick = now;
         }
         if tells_bridged {
             self.add(tick, Event::FramesBridged(pivot as u8, bridged));
