@@ -260,10 +260,18 @@ impl Injection {
             Self::Bursts(..) => &const { [event(Effect::OftenBad)] },
             Self::SupplyHigh(_) => &[SUPPLY_HIGH, NEARLY_SUPPLY_HIGH],
             Self::ResistorHot(_) => &[RESISTOR_HOT],
-            // A converter that shows no drop is found by the same test.
-            Self::ResistorOpen | Self::ResistorStuckOn | Self::SupplyStuck => {
+            Self::ResistorOpen | Self::ResistorStuckOn => {
                 &[RESISTOR_DEAD, MAYBE_RESISTOR_DEAD, RISES, MAYBE_RISES]
             }
+            // It shows no drop when the resistor is tested. In motion duties are wrong by what the bus sags and rises.
+            Self::SupplyStuck => &[
+                RESISTOR_DEAD,
+                MAYBE_RESISTOR_DEAD,
+                FOLLOWING,
+                NEARLY_FOLLOWING,
+                STALLED,
+                NEARLY_STALLED,
+            ],
             Self::BitErrors(_) => {
                 &const {
                     [
