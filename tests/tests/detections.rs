@@ -367,6 +367,30 @@ fn an_encoder_that_slips_is_told() {
     }
 }
 
+/// One that slips again by as much is told again, 10 s later.
+#[test]
+fn an_encoder_that_slips_twice_is_told_twice() {
+    const SLIP_RAD: f64 = 30e-6;
+    let mut bench = Bench::ready();
+    for offset_rad in [SLIP_RAD, 2.0 * SLIP_RAD] {
+        bench.rig.front.stage.encoders[1].set_offset(offset_rad);
+        bench.run(100);
+    }
+    bench.run(200_000);
+    let events = bench.say("EVT?\n");
+    let told_urad: Vec<f64> = (events.lines())
+        .filter_map(|line| line.split_once("stepped by "))
+        .filter_map(|(_, behind)| behind.split_once(" urad, pivot 2"))
+        .filter_map(|(number, _)| number.parse().ok())
+        .collect();
+    let is_one = |urad: &f64| (urad - SLIP_RAD * 1e6).abs() < 2.0;
+    assert!(
+        told_urad.len() == 2 && told_urad.iter().all(is_one),
+        "{events}"
+    );
+    assert_eq!(bench.fault(), None);
+}
+
 /// Where a parameter wants it, the emergency stop is tried after each start before anything drives.
 #[test]
 fn nothing_drives_before_the_emergency_stop_was_pressed_where_that_is_asked_for() {

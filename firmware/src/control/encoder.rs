@@ -87,7 +87,7 @@ pub struct Encoder {
     /// Bad frames in a row.
     bad_frames: u8,
     warning: bool,
-    /// Ready, with no bad frame to make up for and no warning: the next frame need only be plausible.
+    /// Ready, with no bad frame to make up for, no warning and no doubt: the next frame need only be plausible.
     fast_path: bool,
     /// Why it is not ready, if it is not.
     unusable: Option<FaultKind>,
@@ -97,9 +97,10 @@ pub struct Encoder {
     repeats: u16,
     /// Frames that have been bridged so far.
     bridged: u16,
-    /// Sum of the steps that no pivot makes, and what the last of them has made of the step, until that is back; 2^-32 turns.
+    /// Sum of the steps that no pivot makes, 2^-32 turns.
     slipped: i32,
-    slip: i32,
+    /// The last frame has stepped so, or came after bad ones: what it has made of the rate the next may take back, which is no slip.
+    is_rate_doubtful: bool,
 }
 
 impl Default for Encoder {
@@ -117,7 +118,7 @@ impl Default for Encoder {
             repeats: 0,
             bridged: 0,
             slipped: 0,
-            slip: 0,
+            is_rate_doubtful: false,
         }
     }
 }
@@ -177,7 +178,7 @@ impl Encoder {
             Ok(reading) => {
                 self.warning = reading.warning;
                 let fraction = config.fraction(subdivision, reading.counts);
-                if self.is_frozen(fraction) {
+                if self.is_frozen(fraction) && !self.is_rate_doubtful {
                     self.bridge_missing(config, FaultKind::EncoderFrozen);
                 } else {
                     self.count_repeats(fraction);
@@ -193,7 +194,10 @@ impl Encoder {
                 },
             ),
         }
-        self.fast_path = self.good_frames == READY_FRAMES && self.bad_frames == 0 && !self.warning;
+        self.fast_path = self.good_frames == READY_FRAMES
+            && self.bad_frames == 0
+            && !self.warning
+            && !self.is_rate_doubtful;
     }
 
     /// Whether a reading repeats the last one while the pivot turns.
@@ -243,19 +247,18 @@ impl Encoder {
 
     /// Goes where a reading is, so many ticks after the last good one, and sums up what no pivot moves.
     fn step_by(&mut self, config: &EncoderConfig, moved: i32, ticks: u32) {
-        let ordinary = config.max_step_change >> ORDINARY_SHIFT;
-        let most = ordinary * (ticks * (ticks + 1) / 2);
-        let slip = moved.wrapping_sub(self.step);
-        // The frame after one that has stepped takes back what that has made of the rate.
-        let is_back = self.slip != 0 && slip.wrapping_add(self.slip).unsigned_abs() <= ordinary;
-        if slip.unsigned_abs() > most && !is_back && self.good_frames == READY_FRAMES {
-            self.slipped = self.slipped.wrapping_add(slip);
+        let most = (config.max_step_change >> ORDINARY_SHIFT) * (ticks * (ticks + 1) / 2);
+        let change = moved.wrapping_sub(self.step);
+        let has_slipped = change.unsigned_abs() > most
+            && self.good_frames == READY_FRAMES
+            && !self.is_rate_doubtful;
+        if has_slipped {
+            self.slipped = self.slipped.wrapping_add(change);
         }
-        // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
-        let change = slip / ticks as i32;
-        self.slip = if is_back { 0 } else { change };
+        self.is_rate_doubtful = has_slipped || ticks > 1;
         self.advance_by(moved);
-        self.step = self.step.wrapping_add(change);
+        // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
+        self.step = self.step.wrapping_add(change / ticks as i32);
     }
 
     #[inline]
