@@ -391,6 +391,23 @@ fn an_encoder_that_slips_twice_is_told_twice() {
     assert_eq!(bench.fault(), None);
 }
 
+/// What is told does not hang on what is believed: as much with the largest acceleration that may be called plausible, and nothing more.
+#[test]
+fn a_slip_is_told_whatever_is_plausible() {
+    const PLAUSIBLE_ACCELERATION: u32 = 0x5450_0503;
+    for (slip_rad, is_told) in [(12e-6, true), (4e-6, false)] {
+        let mut bench = Bench::default();
+        bench.run(10);
+        bench.set(&[(PLAUSIBLE_ACCELERATION, 500_000.0)]);
+        assert_eq!(bench.error_after("FRF"), "0");
+        bench.settle();
+        bench.rig.front.stage.encoders[1].set_offset(slip_rad);
+        bench.run(40);
+        let events = bench.say("EVT?\n");
+        assert_eq!(events.contains("stepped"), is_told, "{slip_rad}: {events}");
+    }
+}
+
 /// Where a parameter wants it, the emergency stop is tried after each start before anything drives.
 #[test]
 fn nothing_drives_before_the_emergency_stop_was_pressed_where_that_is_asked_for() {

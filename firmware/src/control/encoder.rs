@@ -67,6 +67,12 @@ impl EncoderConfig {
             >> ALIGN_SHIFT
     }
 
+    /// What is no slip, where it is plausible.
+    #[inline]
+    fn ordinary_step_change(&self) -> u32 {
+        self.max_step_change.min(ORDINARY_STEP_CHANGE)
+    }
+
     /// The fraction of a turn that a reading means, 2^-32 turns, without the error within a period of the scale.
     #[inline]
     fn fraction(&self, subdivision: Option<&SubdivisionTable>, counts: u32) -> u32 {
@@ -125,10 +131,10 @@ impl Default for Encoder {
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
 const READY_FRAMES: u8 = 4;
-/// The part of the plausible acceleration that a pivot reaches: 3,125 of 50,000 rad/s^2. Motors make 600, resonances that ring some 1,000; a
-/// blow makes more. What is more between two good frames, 7.8 urad a tick, is believed and told: the encoder has slipped, if nothing has hit
-/// the machine. Each tick that was bridged adds what it may have been off: a step of 117 urad is told behind four.
-const ORDINARY_SHIFT: u32 = 4;
+/// The change of the step, 2^-32 turns, that a pivot reaches: 83 counts, 7.8 urad, 3,125 rad/s^2. Motors make 600, resonances that ring some
+/// 1,000; a blow makes more. What is more between two good frames is believed and told: the encoder has slipped, if nothing has hit the
+/// machine. Each tick that was bridged adds what it may have been off: a step of 117 urad is told behind four.
+const ORDINARY_STEP_CHANGE: u32 = 83 << ALIGN_SHIFT;
 /// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s.
 /// To stop so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
 const FROZEN_STEP: u32 = 16 << ALIGN_SHIFT;
@@ -155,7 +161,7 @@ impl Encoder {
         ) {
             let fraction = config.fraction(subdivision, counts);
             let (moved, innovation) = self.moved(fraction);
-            if innovation <= config.max_step_change >> ORDINARY_SHIFT && !self.is_frozen(fraction) {
+            if innovation <= config.ordinary_step_change() && !self.is_frozen(fraction) {
                 self.count_repeats(fraction);
                 self.advance_by(moved);
                 self.step = moved;
@@ -247,7 +253,7 @@ impl Encoder {
 
     /// Goes where a reading is, so many ticks after the last good one, and sums up what no pivot moves.
     fn step_by(&mut self, config: &EncoderConfig, moved: i32, ticks: u32) {
-        let most = (config.max_step_change >> ORDINARY_SHIFT) * (ticks * (ticks + 1) / 2);
+        let most = config.ordinary_step_change() * (ticks * (ticks + 1) / 2);
         let change = moved.wrapping_sub(self.step);
         let has_slipped = change.unsigned_abs() > most
             && self.good_frames == READY_FRAMES

@@ -24,13 +24,12 @@ pub(in crate::gcs) struct EventLog {
     encoders: [EncoderTold; 3],
 }
 
-/// Bridged frames and steps of an encoder as they were told last, and the lower halves of the ticks of that.
+/// Bridged frames and steps of an encoder as they were told last, and the lower half of the tick of that.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct EncoderTold {
     bridged: u16,
     slipped: i32,
-    bridged_tick: u32,
-    slipped_tick: u32,
+    tick: u32,
 }
 
 /// Bridged frames that are worth an event: more than a single disturbance makes.
@@ -227,22 +226,22 @@ impl EventLog {
             }
         }
     }
+
+    /// What its line has come to since it was told last.
     fn update_encoder(&mut self, snapshot: &Snapshot, pivot: usize) {
         let tick = snapshot.tick;
         let now = tick as u32;
-        let may_tell = |last: u32| last == 0 || now.wrapping_sub(last) >= AGAIN_TICKS;
         let told = &mut self.encoders[pivot];
+        let may_tell = told.tick == 0 || now.wrapping_sub(told.tick) >= AGAIN_TICKS;
         let bridged = snapshot.bridged_frames[pivot].wrapping_sub(told.bridged);
         let slipped = snapshot.slipped[pivot].wrapping_sub(told.slipped);
-        let tells_bridged = bridged >= BRIDGED_FRAMES && may_tell(told.bridged_tick);
-        let tells_slipped = slipped != 0 && may_tell(told.slipped_tick);
+        let tells_bridged = may_tell && bridged >= BRIDGED_FRAMES;
+        let tells_slipped = may_tell && slipped != 0;
         if tells_bridged {
-            told.bridged = snapshot.bridged_frames[pivot];
-            told.bridged_tick = now;
+            (told.bridged, told.tick) = (snapshot.bridged_frames[pivot], now);
         }
         if tells_slipped {
-            told.slipped = snapshot.slipped[pivot];
-            told.slipped_tick = now;
+            (told.slipped, told.tick) = (snapshot.slipped[pivot], now);
         }
         if tells_bridged {
             self.add(tick, Event::FramesBridged(pivot as u8, bridged));
