@@ -3,7 +3,7 @@
 
 use firmware::fault::{FaultKind, Reaction};
 use firmware::mode::Mode;
-use hal_sim::machine::devices::EncoderFault;
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
 use tests::Bench;
 
 const TURN: f64 = 4_294_967_296.0;
@@ -389,6 +389,30 @@ fn an_encoder_that_slips_twice_is_told_twice() {
         "{events}"
     );
     assert_eq!(bench.fault(), None);
+}
+
+/// The frame behind a slip says the same as the slip's where the encoder is quiet and the stage rests: that is no frozen encoder.
+#[test]
+fn an_encoder_that_slips_at_rest_is_not_taken_for_a_frozen_one() {
+    let mut stage = StageParameters::REFERENCE;
+    stage.plant.imperfections.encoder_noise = false;
+    for slip_rad in [10e-6, 30e-6, 100e-6] {
+        let mut bench = Bench::new(&stage);
+        assert_eq!(bench.error_after("FRF"), "0");
+        bench.settle();
+        bench.forget_errors();
+        bench.rig.front.stage.encoders[1].set_offset(slip_rad);
+        bench.run(40);
+        assert_eq!(bench.fault(), None, "{slip_rad}");
+        // A frame that is bridged would go on by the slip once more.
+        let slip_counts = (slip_rad / std::f64::consts::TAU * 67_108_864.0) as u64;
+        let most = slip_counts + slip_counts / 4 + 4;
+        assert!(
+            bench.worst_error_counts() < most,
+            "{slip_rad}: {}",
+            bench.worst_error_counts()
+        );
+    }
 }
 
 /// What is told does not hang on what is believed: as much with the largest acceleration that may be called plausible, and nothing more.
