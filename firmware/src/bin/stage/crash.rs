@@ -14,7 +14,7 @@ pub const EXCEPTION_MAGIC: u32 = 0x4558_4350;
 /// The words: which kind, then what the kind has. The start-up code leaves them alone. Of an exception, written in
 /// [`fault_handlers`](crate::fault_handlers): its number, the stack pointer, program counter, link register, and the
 /// registers CFSR, HFSR, MMFAR and BFAR of the processor.
-#[unsafe(link_section = ".uninit.CRASH")]
+#[unsafe(link_section = ".ccm.CRASH")]
 pub static CRASH: [AtomicU32; WORDS] = [const { AtomicU32::new(0) }; WORDS];
 
 /// Numbers of exceptions: the processor's own, and the first of the chip's.

@@ -111,6 +111,7 @@ mod app {
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         #[unsafe(link_section = ".ccm.state")]
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
+        #[unsafe(link_section = ".ccm.serial")]
         serial_place: MaybeUninit<identity::Serial> = MaybeUninit::uninit(),
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
