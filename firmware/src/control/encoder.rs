@@ -17,6 +17,8 @@ pub struct EncoderConfig {
     zero: u32,
     /// Largest believable change of the step from tick to tick, 2^-32 turns.
     max_step_change: u32,
+    /// What of it is no slip.
+    ordinary_step_change: u32,
     /// How much later than the first port it latches, 2^-23 ticks.
     latch_offset: i16,
     /// 1, or -1 where the encoder counts against the pivot's direction.
@@ -32,12 +34,14 @@ impl EncoderConfig {
     /// For a tick of `period_s`.
     pub fn new(setup: &EncoderMounting, supervision: &Supervision, period_s: f64) -> Self {
         let radians = supervision.plausible_acceleration_rad_s2 * period_s * period_s;
+        let max_step_change = (radians / core::f64::consts::TAU * 4_294_967_296.0) as u32;
         Self {
             zero: setup.zero_counts << ALIGN_SHIFT,
             latch_offset: 0,
             direction: if setup.reversed { -1 } else { 1 },
             max_bridged_frames: supervision.bridged_frames,
-            max_step_change: (radians / core::f64::consts::TAU * 4_294_967_296.0) as u32,
+            max_step_change,
+            ordinary_step_change: max_step_change.min(ORDINARY_STEP_CHANGE),
         }
     }
 }
@@ -65,12 +69,6 @@ impl EncoderConfig {
             .wrapping_add(self.zero)
             .wrapping_add(1 << (ALIGN_SHIFT - 1))
             >> ALIGN_SHIFT
-    }
-
-    /// What is no slip, where it is plausible.
-    #[inline]
-    fn ordinary_step_change(&self) -> u32 {
-        self.max_step_change.min(ORDINARY_STEP_CHANGE)
     }
 
     /// The fraction of a turn that a reading means, 2^-32 turns, without the error within a period of the scale.
@@ -161,7 +159,7 @@ impl Encoder {
         ) {
             let fraction = config.fraction(subdivision, counts);
             let (moved, innovation) = self.moved(fraction);
-            if innovation <= config.ordinary_step_change() && !self.is_frozen(fraction) {
+            if innovation <= config.ordinary_step_change && !self.is_frozen(fraction) {
                 self.count_repeats(fraction);
                 self.advance_by(moved);
                 self.step = moved;
@@ -253,7 +251,7 @@ impl Encoder {
 
     /// Goes where a reading is, so many ticks after the last good one, and sums up what no pivot moves.
     fn step_by(&mut self, config: &EncoderConfig, moved: i32, ticks: u32) {
-        let most = config.ordinary_step_change() * (ticks * (ticks + 1) / 2);
+        let most = config.ordinary_step_change * (ticks * (ticks + 1) / 2);
         let change = moved.wrapping_sub(self.step);
         let has_slipped = change.unsigned_abs() > most
             && self.good_frames == READY_FRAMES
