@@ -13,6 +13,7 @@
 //! | [`mod@closed_loop`] | plant and sensitivity as they were measured with the servo on |
 //! | [`chain`] | the machine as it answers to small motions: motors, rings, platform, springs between |
 //! | [`mod@platform`] | mass, inertia and centre of what is carried, from a tour |
+//! | [`zeros`] | wrong zeros of the encoders, from a tour |
 //! | [`tuning`] | margins of the three loops together; gains and notches for them |
 //! | `spectrum`, `least_squares` | spectra of single periods; non-linear least squares |
 //!
@@ -41,6 +42,7 @@ mod spectrum;
 pub mod subdivision;
 pub mod tuning;
 pub mod winding;
+pub mod zeros;
 
 pub use drive_model::{DriveModel, drive_model};
 pub use frequency_response::frequency_response;
@@ -49,3 +51,4 @@ pub use platform::platform;
 pub use record::{Record, Signals, Timing};
 pub use subdivision::subdivision;
 pub use winding::winding;
+pub use zeros::zero_errors;

@@ -104,81 +104,28 @@ pub enum PlatformError {
 pub const MOST_CONDITION: f64 = 100.0;
 /// More that is left is refused.
 pub const MOST_RESIDUAL: f64 = 0.25;
-const UNKNOWNS: usize = 16;
+const UNKNOWNS: usize = 18;
+/// The first of those that say how much more a torque is than it is told, of rings 2 and 3 beside ring 1.
+const GAINS: usize = 16;
 
 /// What is carried, by linear least squares.
 ///
 /// # Errors
 /// [`PlatformError`].
 pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError> {
-    let samples = tour.angle_rad[0].len();
-    let window = ((how.smoothing_s / tour.step_s).round() as usize).max(2);
-    let all = tour.angle_rad.iter().chain(&tour.torque_n_m);
-    if all.clone().any(|signal| signal.len() != samples) || samples < 4 * window {
-        return Err(PlatformError::Lengths);
+    let fit = fit(std::slice::from_ref(tour), how, Gains::Known)?;
+    if !(fit.condition <= MOST_CONDITION) {
+        return Err(PlatformError::Condition {
+            condition: fit.condition,
+        });
     }
-    let torques = [0, 1, 2].map(|i| smoothed(&tour.torque_n_m[i], window));
-    let raw = poses(tour)?;
-    let contacts = contacts(tour, &raw, how).map(|contact| smoothed(&contact, window));
-    let part = |k: usize| smoothed(&raw.iter().map(|pose| pose[k]).collect::<Vec<_>>(), window);
-    let (x, y, theta) = (part(0), part(1), part(2));
-    let poses: Vec<_> = (0..x.len())
-        .map(|k| Vector3::new(x[k], y[k], theta[k]))
-        .collect();
-    let mut rows = Vec::new();
-    let mut right = Vec::new();
-    // Neighbours tell the same.
-    for at in (1..poses.len() - 1).step_by((window / 4).max(1)) {
-        let rubs = [0, 1, 2, 3, 4, 5].map(|k| contacts[k][at]);
-        let (matrix, known) = equations(
-            &poses[at - 1..=at + 1],
-            &rubs,
-            tour.step_s,
-            how.drive_inertia,
-        )
-        .ok_or(PlatformError::NoPose { sample: at })?;
-        for i in 0..3 {
-            rows.push(matrix[i]);
-            right.push(torques[i][at] - known[i]);
-        }
-    }
-    let right = DVector::from_vec(right);
-    let unknowns: Vec<usize> = (0..UNKNOWNS)
-        .filter(|&k| k != 4 || how.drive_inertia.is_none())
-        .collect();
-    let matrix = DMatrix::from_fn(rows.len(), unknowns.len(), |row, k| rows[row][unknowns[k]]);
-    let sizes = DVector::from_iterator(
-        unknowns.len(),
-        matrix.column_iter().map(|column| column.norm().max(1e-12)),
-    );
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, k| {
-        matrix[(row, k)] / sizes[k]
-    });
-    let normal = scaled.tr_mul(&scaled);
-    let eigen = normal.symmetric_eigenvalues();
-    let condition = (eigen.max() / eigen.min().max(1e-300)).sqrt();
-    if !(condition <= MOST_CONDITION) {
-        return Err(PlatformError::Condition { condition });
-    }
-    let inverse = normal
-        .try_inverse()
-        .ok_or(PlatformError::Condition { condition })?;
-    let solved = &inverse * scaled.tr_mul(&right);
-    let left = (&scaled * &solved - &right).norm_squared();
-    let residual = (left / right.norm_squared()).sqrt();
+    let residual = (fit.left.norm_squared() / fit.torques_squared).sqrt();
     if !(residual <= MOST_RESIDUAL) {
         return Err(PlatformError::Residual {
             percent: (100.0 * residual) as u32,
         });
     }
-    // Neighbouring rows err alike: a window's worth of them is one.
-    let variance = left / right.len() as f64 * 4.0;
-    let (mut numbers, mut deviations) = ([0.0; UNKNOWNS], [0.0; UNKNOWNS]);
-    for (k, &unknown) in unknowns.iter().enumerate() {
-        numbers[unknown] = solved[k] / sizes[k];
-        deviations[unknown] = (inverse[(k, k)] * variance).sqrt() / sizes[k];
-    }
-    let radius = how.track_radius_m;
+    let (numbers, deviations, radius) = (fit.numbers, fit.deviations, how.track_radius_m);
     Ok(Platform {
         mass_kg: numbers[0] / (radius * radius),
         inertia_kg_m2: numbers[1],
@@ -197,8 +144,117 @@ pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError
             deviations[4],
         ],
         residual,
+        condition: fit.condition,
+    })
+}
+
+/// The solution of the linear equations.
+pub(crate) struct Fit {
+    numbers: [f64; UNKNOWNS],
+    deviations: [f64; UNKNOWNS],
+    /// Torques that are left over, N m: of all rings at an instant, then of the next.
+    pub left: DVector<f64>,
+    /// Sum of the squares of the torques.
+    torques_squared: f64,
+    condition: f64,
+}
+
+/// Rows that err as much as one that errs by itself: neighbours are smoothed with the same window.
+const ALIKE: f64 = 4.0;
+
+/// Of current sensors and motor constants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Gains {
+    /// Those of all rings are alike.
+    Known,
+    /// They are sought, beside ring 1's.
+    Sought,
+}
+
+/// Of one tour, or of several with the same load.
+pub(crate) fn fit(tours: &[Tour], how: &Evaluation, gains: Gains) -> Result<Fit, PlatformError> {
+    let (mut rows, mut right) = (Vec::new(), Vec::new());
+    for tour in tours {
+        add_rows(tour, how, &mut rows, &mut right)?;
+    }
+    let right = DVector::from_vec(right);
+    let unknowns: Vec<usize> = (0..UNKNOWNS)
+        .filter(|&k| match k {
+            4 => how.drive_inertia.is_none(),
+            GAINS.. => gains == Gains::Sought,
+            _ => true,
+        })
+        .collect();
+    let matrix = DMatrix::from_fn(rows.len(), unknowns.len(), |row, k| rows[row][unknowns[k]]);
+    let sizes = DVector::from_iterator(
+        unknowns.len(),
+        matrix.column_iter().map(|column| column.norm().max(1e-12)),
+    );
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, k| {
+        matrix[(row, k)] / sizes[k]
+    });
+    let normal = scaled.tr_mul(&scaled);
+    let eigen = normal.symmetric_eigenvalues();
+    let condition = (eigen.max() / eigen.min().max(1e-300)).sqrt();
+    let inverse = normal
+        .try_inverse()
+        .ok_or(PlatformError::Condition { condition })?;
+    let solved = &inverse * scaled.tr_mul(&right);
+    let left = &scaled * &solved - &right;
+    let variance = left.norm_squared() / right.len() as f64 * ALIKE;
+    let (mut numbers, mut deviations) = ([0.0; UNKNOWNS], [0.0; UNKNOWNS]);
+    for (k, &unknown) in unknowns.iter().enumerate() {
+        numbers[unknown] = solved[k] / sizes[k];
+        deviations[unknown] = (inverse[(k, k)] * variance).sqrt() / sizes[k];
+    }
+    Ok(Fit {
+        numbers,
+        deviations,
+        left,
+        torques_squared: right.norm_squared(),
         condition,
     })
+}
+
+/// Adds the equations of all instants, and their right sides.
+fn add_rows(
+    tour: &Tour,
+    how: &Evaluation,
+    rows: &mut Vec<[f64; UNKNOWNS]>,
+    right: &mut Vec<f64>,
+) -> Result<(), PlatformError> {
+    let samples = tour.angle_rad[0].len();
+    let window = ((how.smoothing_s / tour.step_s).round() as usize).max(2);
+    let mut all = tour.angle_rad.iter().chain(&tour.torque_n_m);
+    if all.any(|signal| signal.len() != samples) || samples < 4 * window {
+        return Err(PlatformError::Lengths);
+    }
+    let torques = [0, 1, 2].map(|i| smoothed(&tour.torque_n_m[i], window));
+    let raw = poses(tour)?;
+    let contacts = contacts(tour, &raw, how).map(|contact| smoothed(&contact, window));
+    let part = |k: usize| smoothed(&raw.iter().map(|pose| pose[k]).collect::<Vec<_>>(), window);
+    let (x, y, theta) = (part(0), part(1), part(2));
+    let poses: Vec<_> = (0..x.len())
+        .map(|k| Vector3::new(x[k], y[k], theta[k]))
+        .collect();
+    // Neighbours tell the same.
+    for at in (1..poses.len() - 1).step_by((window / 4).max(1)) {
+        let rubs = [0, 1, 2, 3, 4, 5].map(|k| contacts[k][at]);
+        let (mut matrix, known) = equations(
+            &poses[at - 1..=at + 1],
+            &rubs,
+            tour.step_s,
+            how.drive_inertia,
+        )
+        .ok_or(PlatformError::NoPose { sample: at })?;
+        matrix[1][GAINS] = torques[1][at];
+        matrix[2][GAINS + 1] = torques[2][at];
+        for i in 0..3 {
+            rows.push(matrix[i]);
+            right.push(torques[i][at] - known[i]);
+        }
+    }
+    Ok(())
 }
 
 /// Means under a Hann window, of as many values.

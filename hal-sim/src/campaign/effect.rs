@@ -114,6 +114,8 @@ pub enum Effect {
     FollowingError,
     /// See above.
     NearlyFollowingError,
+    /// A pivot is further from its setpoint than any stage allows that nobody has told otherwise.
+    FarOff,
     /// The setpoint of the pivot has gone further than a reading may stay the same.
     FrozenWay,
     /// A reading has stayed the same for as long as it may.
@@ -345,7 +347,15 @@ impl<'a> Effects<'a> {
             Effect::LateTicks => tick >= first + MISSED_EVERY * u64::from(supervision.late_ticks),
             Effect::FollowingError | Effect::NearlyFollowingError if self.driven == 0 => false,
             Effect::FollowingError | Effect::NearlyFollowingError => {
-                let over = FOLLOWING[usize::from(effect == Effect::NearlyFollowingError)];
+                let is_near = effect == Effect::NearlyFollowingError;
+                let over = FOLLOWING[usize::from(is_near)];
+                // The setpoint of a tick that ends in a fault is not told: it may be slower than the last one by what a tick brakes.
+                let limits = &self.parameters.limits;
+                let braked_rad_s = if is_near {
+                    limits.pivot_acceleration_rad_s2 / limits.rate_hz
+                } else {
+                    0.0
+                };
                 let errors = shown_errors_rad(now.shown, self.parameters, now.position);
                 // The setpoint is behind by what the pivots go in ticks that do not come.
                 let age = tick.checked_sub(scenario.at);
@@ -353,9 +363,20 @@ impl<'a> Effects<'a> {
                 let allowed_s =
                     supervision.following_error_s + missed as f64 / self.parameters.limits.rate_hz;
                 (errors.iter().zip(now.rates_rad_s)).any(|(error, rate_rad_s)| {
-                    let lag_rad = allowed_s * f64::from(rate_rad_s.abs());
+                    let rate_rad_s = f64::from(rate_rad_s.abs()) - braked_rad_s;
+                    let lag_rad = allowed_s * rate_rad_s.max(0.0);
                     *error > over * (supervision.following_error_rad + lag_rad)
                 })
+            }
+            Effect::FarOff => {
+                let most_rad = Parameters::REFERENCE.supervision.following_error_rad;
+                let errors = shown_errors_rad(now.shown, self.parameters, now.position);
+                self.driven > 0 && errors.iter().any(|error| *error > most_rad)
+            }
+            // As it is referenced, the setpoint goes to where the pivot is.
+            Effect::FrozenWay if self.driven == 0 => {
+                self.broke_at = None;
+                false
             }
             Effect::FrozenWay => {
                 let turns = setpoint_turns(now.position)[scenario.axis];

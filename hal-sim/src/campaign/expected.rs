@@ -197,6 +197,15 @@ pub(super) const MOST_EARLY: u64 = 16;
 /// Ticks until the watchdog has bitten, the controller has started and its command side has told.
 pub(super) const RESTART_TICKS: u64 = 10 + 20 + COMMAND_SIDE_TICKS;
 
+/// On a stage that allows pivots to be far from their setpoints: they go where guides let them, while the controller's model of their currents has
+/// the setpoints' rates.
+const LED_ASTRAY: Cause = Cause {
+    effect: Effect::FarOff,
+    kind: Some(Kind::CurrentUnexplained),
+    within_ticks: None,
+    early_ticks: 0,
+};
+
 impl Injection {
     /// What the controller has to say.
     #[must_use]
@@ -242,7 +251,14 @@ impl Injection {
             Self::Jam => &[FOLLOWING, NEARLY_FOLLOWING, STILL, STALLED, NEARLY_STALLED],
             // A machine that is hit rings.
             Self::Knock(_) | Self::Runaway(_) => MOTION,
-            Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, NEARLY_FOLLOWING, STILL],
+            Self::Wedged => &[
+                STALLED,
+                NEARLY_STALLED,
+                FOLLOWING,
+                NEARLY_FOLLOWING,
+                STILL,
+                LED_ASTRAY,
+            ],
             Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING, NEARLY_FOLLOWING],
             Self::DamagedSettings => &[DAMAGED],
             Self::Warning | Self::QueueFull | Self::Slip(_) => &const { [event(Effect::AtOnce)] },

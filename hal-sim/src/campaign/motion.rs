@@ -27,6 +27,8 @@ pub(super) struct Motion {
     pub pressed: Option<[u64; 2]>,
     /// The tick after which it is forgotten.
     pub watched_from: u64,
+    /// The tick after which it is referenced for the motion.
+    pub referenced_at: u64,
 }
 
 impl Motion {
@@ -68,6 +70,11 @@ impl Motion {
             lines,
             pressed: is_after_fault.then_some(PRESSED),
             watched_from: if is_after_fault { HELD_AGAIN } else { 0 },
+            referenced_at: if is_after_fault {
+                REFERENCED_AGAIN
+            } else {
+                REFERENCE
+            },
         }
     }
 }
@@ -79,6 +86,7 @@ impl Motion {
         self.lines.retain(|(at, _)| !is_of_it(*at));
         self.pressed = None;
         self.watched_from = 0;
+        self.referenced_at = REFERENCE;
     }
 }
 

@@ -12,8 +12,9 @@ use crate::machine::unknown;
 use crate::random::Random;
 use crate::rig::{Told, with_gains_fitted, with_motion_fitted, with_wiring_told};
 
-/// The tick from which on the stage is held, after `FRF`.
+/// The tick from which on the stage is held, after `FRF`, and the ticks in which something may break meanwhile.
 const HELD: u64 = 16;
+const REFERENCING: u32 = 14;
 
 /// A run before it is run.
 #[derive(Clone, Debug)]
@@ -84,10 +85,12 @@ impl Scenario {
     }
 }
 
-/// When it breaks: somewhere in the motion, as the stage has just been referenced, or in a stop.
+/// When it breaks: somewhere in the motion, while the stage is being referenced, as it has just been, or in a stop.
 fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     let in_motion = FIRST_MOTION + u64::from(random.below(MOTION_TICKS));
     let just_held = motion.watched_from.max(HELD) + u64::from(random.below(60));
+    // From the line to the stage that is held, and a little before.
+    let in_reference = motion.referenced_at - 2 + u64::from(random.below(REFERENCING));
     let mut stops = motion
         .lines
         .iter()
@@ -102,9 +105,11 @@ fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
         Injection::ResistorOpen | Injection::ResistorStuckOn if random.below(2) == 0 => 1,
         // At rest: in motion what needs a place in the queue waits for one.
         Injection::QueueFull => between_lines(FIRST_MOTION / 2, &motion.lines),
-        _ => match random.below(8) {
-            0 => just_held,
-            1 | 2 => in_stop.unwrap_or(in_motion),
+        _ => match random.below(16) {
+            0 | 1 => just_held,
+            2..=5 => in_stop.unwrap_or(in_motion),
+            // A host that has promised nothing yet may be silent.
+            6 if *injection != Injection::HostSilent => in_reference,
             _ => in_motion,
         },
     }

@@ -1,12 +1,12 @@
 //! `tripivot commission` on machines as workshops build them: those that are sound are brought up, the others refused where it shows.
 
-use desk::commission::Backup;
+use desk::commission::{Backup, Machine};
 use firmware::control::servo::BorneLimits;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tripivot::attended::SimulatedMachine;
 
@@ -18,6 +18,9 @@ const MOST_CONSTANT_ERROR: f64 = 0.0027;
 const MOST_CONSTANT_ERROR_AGAIN: f64 = 0.006;
 /// And of friction, measured again.
 const MOST_FRICTION_ERROR_AGAIN: f64 = 0.0096;
+
+/// And of zeros by forces, mrad.
+const MOST_ZERO_ERROR_MRAD: f64 = 5.2;
 
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("tripivot-{name}-{}", std::process::id()));
@@ -70,15 +73,19 @@ fn wiring(machine: &StageParameters) -> ([u8; 3], [u8; 3]) {
 
 #[test]
 fn a_sound_machine_is_brought_up() {
-    brings_up(1);
+    let folder = brings_up(1);
+    a_wrong_zero_is_found(1, &folder);
+    let _ = std::fs::remove_dir_all(&folder);
 }
 
 #[test]
 fn a_sound_machine_whose_friction_varies_over_a_turn_is_brought_up() {
-    brings_up(19);
+    let folder = brings_up(19);
+    let _ = std::fs::remove_dir_all(&folder);
 }
 
-fn brings_up(seed: u64) {
+/// The folder with what its controller keeps.
+fn brings_up(seed: u64) -> PathBuf {
     let machine = unknown(seed);
     let (output, folder) = commission(&format!("sound-{seed}"), &["--unknown", &seed.to_string()]);
     let told = text(&output);
@@ -98,7 +105,7 @@ fn brings_up(seed: u64) {
     its_settings_run_the_machine(seed, &folder);
     one_step_is_run_again(&machine, seed, &folder);
     what_was_before_is_given_back(&machine, seed, &folder);
-    let _ = std::fs::remove_dir_all(&folder);
+    folder
 }
 
 fn finds_the_wires(machine: &StageParameters, told: &str) {
@@ -236,7 +243,7 @@ fn ends_in_time(told: &str) {
 }
 
 /// As after a repair: what the other steps found is in the controller's parameters.
-fn one_step_is_run_again(machine: &StageParameters, seed: u64, folder: &std::path::Path) {
+fn one_step_is_run_again(machine: &StageParameters, seed: u64, folder: &Path) {
     let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
         .args([
             "commission",
@@ -274,7 +281,7 @@ fn one_step_is_run_again(machine: &StageParameters, seed: u64, folder: &std::pat
 }
 
 /// The settings before the last run: those that the run before it left.
-fn what_was_before_is_given_back(machine: &StageParameters, seed: u64, folder: &std::path::Path) {
+fn what_was_before_is_given_back(machine: &StageParameters, seed: u64, folder: &Path) {
     let seed = seed.to_string();
     let undo = || {
         Command::new(env!("CARGO_BIN_EXE_tripivot"))
@@ -297,7 +304,7 @@ fn what_was_before_is_given_back(machine: &StageParameters, seed: u64, folder: &
 }
 
 /// What a controller keeps is what it kept before the last run.
-fn is_as_before(machine: &StageParameters, folder: &std::path::Path) {
+fn is_as_before(machine: &StageParameters, folder: &Path) {
     let flash = SettingsFlash::open(&folder.join("settings.flash")).expect("kept settings");
     let mut controller = SimulatedMachine::new(machine, flash);
     let after = folder.join("after.txt");
@@ -357,7 +364,53 @@ fn steps_that_cannot_be_first_are_refused() {
     let _ = std::fs::remove_dir_all(&folder);
 }
 
-fn its_settings_run_the_machine(seed: u64, folder: &std::path::Path) {
+/// After a service that has left encoder 1's ring turned by three degrees: any three angles are a pose, so only forces tell.
+fn a_wrong_zero_is_found(seed: u64, folder: &Path) {
+    const BY_COUNTS: f64 = 3.0 * 67_108_864.0 / 360.0;
+    let flash = SettingsFlash::open(&folder.join("settings.flash")).expect("kept settings");
+    let mut controller = SimulatedMachine::new(&unknown(seed), flash);
+    let mut ask = |line: &str| {
+        controller
+            .ask(line)
+            .expect("it answers")
+            .unwrap_or_default()
+    };
+    let told = ask("SPA? 1 0x54500600");
+    let zero: f64 = (told.trim().rsplit_once('='))
+        .and_then(|(_, zero)| zero.parse().ok())
+        .expect("a zero");
+    let left = ask("SPA? 1 0x54500610").trim().ends_with("=0");
+    let by = if left { -BY_COUNTS } else { BY_COUNTS };
+    let zero = (zero + by).rem_euclid(67_108_864.0).round();
+    ask("CCL 1 ADVANCED");
+    ask(&format!("SPA 1 0x54500600 {zero}"));
+    ask("WPA 100");
+    drop(controller);
+    let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+        .args([
+            "commission",
+            "--only",
+            "forces",
+            "--unknown",
+            &seed.to_string(),
+            "--out",
+        ])
+        .arg(folder)
+        .output()
+        .expect("the program runs");
+    let told = text(&output);
+    println!("{told}");
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    // Two degrees beside the mean of all, and one each: mrad.
+    for (pivot, truth) in [(1, 34.91), (2, -17.45), (3, -17.45)] {
+        let line = format!("pivot {pivot} is told too far left by, beside the mean of all");
+        let off = numbers(&told, &line).next().expect("a number") - truth;
+        assert!(off.abs() < MOST_ZERO_ERROR_MRAD, "{told}");
+    }
+    assert!(told.contains("put the platform into its jig"), "{told}");
+}
+
+fn its_settings_run_the_machine(seed: u64, folder: &Path) {
     let script = folder.join("turn.gcs");
     std::fs::write(
         &script,

@@ -38,6 +38,8 @@ pub const PAYLOAD_X: u32 = 0x5450_0704;
 pub const PAYLOAD_Y: u32 = 0x5450_0705;
 /// Of all pivots.
 pub const RING_INERTIA: u32 = 0x5450_0807;
+/// Way that a ring preslides, rad.
+pub const PRESLIDING: u32 = 0x5450_080A;
 pub const NOMINAL_SUPPLY: u32 = 0x5450_0806;
 pub const PWM_HZ: u32 = 0x5450_080B;
 

@@ -1,5 +1,6 @@
 //! The steps, in the order in which they are run: first what puts no power on a motor.
 
+mod forces;
 mod friction;
 mod gains;
 mod hand;
@@ -97,6 +98,11 @@ pub static STEPS: &[Step] = &[
         name: "verification",
         about: "moves at full speed: following error and settling",
         run: verification::run,
+    },
+    Step {
+        name: "forces",
+        about: "moves around the middle: whether what the motors have to do for them fits the zeros of the encoders",
+        run: forces::run,
     },
     Step {
         name: "keep",
