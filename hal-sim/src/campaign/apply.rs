@@ -115,6 +115,7 @@ impl Injection {
             Self::HostSilent
             | Self::LoopStands
             | Self::DamagedSettings
+            | Self::NewerSettings
             | Self::QueueFull
             | Self::Gain(_) => {}
             // Once done, it stays.

@@ -93,7 +93,8 @@ impl Injection {
             43 => Self::ResistorStuckOn,
             44 => Self::Slip(random.between(SMALLEST_SLIP_RAD, LARGEST_SLIP_RAD) * random.sign()),
             45 => Self::CurrentStuck,
-            _ => Self::SupplyStuck,
+            46 => Self::SupplyStuck,
+            _ => Self::NewerSettings,
         }
     }
 }

@@ -192,6 +192,11 @@ const DAMAGED: Cause = Cause {
     ..cause(Effect::AtOnce, Kind::SettingsDamaged, 0)
 };
 
+const NEWER: Cause = Cause {
+    kind: Some(Kind::SettingsNewer),
+    ..DAMAGED
+};
+
 /// Largest of the early ticks: for so long a fault may come before its cause.
 pub(super) const MOST_EARLY: u64 = 16;
 /// Ticks until the watchdog has bitten, the controller has started and its command side has told.
@@ -261,6 +266,7 @@ impl Injection {
             ],
             Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING, NEARLY_FOLLOWING],
             Self::DamagedSettings => &[DAMAGED],
+            Self::NewerSettings => &[NEWER],
             Self::Warning | Self::QueueFull | Self::Slip(_) => &const { [event(Effect::AtOnce)] },
             Self::LoopStands | Self::Crash => {
                 &const {

@@ -102,6 +102,8 @@ pub enum Injection {
     CurrentStuck,
     /// The converter of the supply repeats its last sample.
     SupplyStuck,
+    /// What is kept was written by a newer firmware.
+    NewerSettings,
 }
 
 /// What breaks in the same tick as an encoder falls silent.
@@ -118,7 +120,7 @@ pub enum Other {
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 47] = [
+pub const NAMES: [&str; 48] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -166,6 +168,7 @@ pub const NAMES: [&str; 47] = [
     "encoder slips",
     "current sensor stuck",
     "supply sensor stuck",
+    "settings newer",
 ];
 
 /// One of so many ticks does not come.
@@ -246,6 +249,7 @@ impl Injection {
             Self::Slip(_) => 44,
             Self::CurrentStuck => 45,
             Self::SupplyStuck => 46,
+            Self::NewerSettings => 47,
         }
     }
 
@@ -289,7 +293,10 @@ impl Injection {
     /// Whether it is there from the start.
     #[must_use]
     pub const fn is_before_start(&self) -> bool {
-        matches!(self, Self::DamagedSettings | Self::ExchangedLines)
+        matches!(
+            self,
+            Self::DamagedSettings | Self::NewerSettings | Self::ExchangedLines
+        )
     }
 
     /// Whether the program ticks no more, until something starts it again.

@@ -57,4 +57,5 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     SECOND_HEAD,
     "a second current sensor, or a sum of currents and the supply's",
     "a second divider: it is found at servo on only",
+    NOTHING,
 ];

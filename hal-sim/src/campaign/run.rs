@@ -5,7 +5,7 @@ use super::inputs::Read;
 use super::outcome::{End, Outcome, Seen};
 use super::rest::AT_REST_RAD_S;
 use super::scenario::Scenario;
-use super::settings::damaged;
+use super::settings::{damaged, newer};
 use super::truth::fastest_rad_s;
 use super::watch::Watch;
 use crate::front::Host;
@@ -27,10 +27,10 @@ const FLOOD_TICKS: u64 = 20;
 #[must_use]
 pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     let mut random = Random::new(!scenario.seed);
-    let flash = if scenario.injection == Injection::DamagedSettings && !is_control {
-        damaged(&mut random)
-    } else {
-        SettingsFlash::in_memory()
+    let flash = match scenario.injection {
+        Injection::DamagedSettings if !is_control => damaged(&mut random),
+        Injection::NewerSettings if !is_control => newer(&mut random),
+        _ => SettingsFlash::in_memory(),
     };
     let mut memory = ControllerMemory::new();
     let mut rig = Rig::simulated(&mut memory, &scenario.stage, &scenario.parameters, flash);

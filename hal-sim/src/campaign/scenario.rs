@@ -99,7 +99,7 @@ fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
         .next_back()
         .map(|(sent, _)| sent + u64::from(random.below(600)));
     match injection {
-        Injection::DamagedSettings => 0,
+        Injection::DamagedSettings | Injection::NewerSettings => 0,
         Injection::ExchangedLines => 1,
         // Found before anything drives; in motion mostly not.
         Injection::ResistorOpen | Injection::ResistorStuckOn if random.below(2) == 0 => 1,

@@ -1,7 +1,8 @@
-//! Kept settings of which a bit has flipped.
+//! Kept settings of which a bit has flipped, and those of a newer firmware.
 
 use std::sync::OnceLock;
 
+use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 
@@ -15,13 +16,14 @@ const TICKS: u32 = 100;
 /// Bytes of a record before what is kept: its head, twice, of which one may be damaged. Its CRC and its end stand behind.
 const FRONT: usize = 32;
 const LENGTH: usize = 8;
+/// A record without moves and calibration has an older version than the newest that the firmware knows.
+const MORE_THAN_KNOWN: u16 = 16;
+/// That of the records, as zip and Ethernet have it.
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// A flash with settings that were whole once.
 pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
-    static KEPT: OnceLock<Vec<u8>> = OnceLock::new();
-    let mut bytes = KEPT.get_or_init(kept).clone();
-    let length: [u8; 4] = [0, 1, 2, 3].map(|i| bytes[LENGTH + i]);
-    let length = u32::from_le_bytes(length) as usize;
+    let (mut bytes, length) = record();
     // What is kept, or the CRC behind it; not the bytes that fill up the last word.
     let place = random.below(length as u32 + 4) as usize;
     let filled = if place < length {
@@ -31,6 +33,27 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
     };
     bytes[FRONT + filled] ^= 1 << random.below(8);
     SettingsFlash::holding(&bytes)
+}
+
+/// A flash with settings that a newer firmware has written: their version, which comes first, is a later one, and all else is whole.
+pub(super) fn newer(random: &mut Random) -> SettingsFlash {
+    let (mut bytes, length) = record();
+    let version = u16::from_le_bytes([bytes[FRONT], bytes[FRONT + 1]]);
+    let later = version + MORE_THAN_KNOWN + random.below(1_000) as u16;
+    bytes[FRONT..FRONT + 2].copy_from_slice(&later.to_le_bytes());
+    let end = FRONT + length.next_multiple_of(4);
+    // Of the head, once, and of what is kept.
+    let crc = CRC.checksum(&[&bytes[..FRONT / 2], &bytes[FRONT..FRONT + length]].concat());
+    bytes[end..end + 4].copy_from_slice(&crc.to_le_bytes());
+    SettingsFlash::holding(&bytes)
+}
+
+/// What is kept, in its record, and how long it is without that.
+fn record() -> (Vec<u8>, usize) {
+    static KEPT: OnceLock<Vec<u8>> = OnceLock::new();
+    let bytes = KEPT.get_or_init(kept).clone();
+    let length: [u8; 4] = [0, 1, 2, 3].map(|i| bytes[LENGTH + i]);
+    (bytes, u32::from_le_bytes(length) as usize)
 }
 
 fn kept() -> Vec<u8> {
