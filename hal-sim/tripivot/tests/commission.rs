@@ -6,8 +6,9 @@ use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use tripivot::attended::SimulatedMachine;
 
 /// The worst of the machines tried here, and a tenth more. Currents are as their meters have them.
@@ -483,4 +484,45 @@ fn the_steps_are_listed_without_a_machine() {
         assert!(told.lines().any(|line| line.starts_with(step)), "{told}");
     }
     assert!(!folder.exists());
+}
+
+/// What a person has to do is done when somebody says so: by Enter, or by `--yes`. A closed input says nothing.
+#[cfg(unix)]
+#[test]
+fn nobody_at_the_keyboard_is_no_answer() {
+    let mut served = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+        .args(["serve", "--listen", "127.0.0.1:0", "--web", "off"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("it runs");
+    let mut line = String::new();
+    let mut out = BufReader::new(served.stdout.take().expect("its output"));
+    out.read_line(&mut line).expect("a line");
+    let address = line
+        .trim()
+        .strip_prefix("listening at ")
+        .expect("an address");
+    let folder = folder("keyboard");
+    let zeros = |more: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_tripivot"))
+            .args(["commission", "--only", "zeros", "--connect", address])
+            .args(more)
+            .arg("--out")
+            .arg(&folder)
+            .stdin(Stdio::null())
+            .output()
+            .expect("the program runs")
+    };
+    let refused = zeros(&[]);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    let done = zeros(&["--yes"]);
+    // Dead already, if it has failed.
+    let _ = served.kill();
+    let _ = served.wait();
+    let _ = std::fs::remove_dir_all(&folder);
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(said.contains("nobody is there to press Enter"), "{said}");
+    assert!(text(&refused).is_empty());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done));
+    assert!(text(&done).contains("zero of encoder 3"));
 }

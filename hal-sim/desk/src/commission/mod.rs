@@ -145,7 +145,11 @@ pub fn run(
                 let what = format!("{error}{fault}");
                 Some(Failure::new(what, "see what FLT? and EVT? tell"))
             }
-            Err(CommissionError::Controller(error)) => return Err(error),
+            Err(CommissionError::Controller(error)) => {
+                // It may be the person who does not answer. Where it is the controller, this fails as well.
+                let _ = bench.give_up();
+                return Err(error);
+            }
         };
         let seconds = bench.clock_s()? - start_s;
         let failure = match failure {

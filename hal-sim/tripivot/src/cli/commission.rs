@@ -42,16 +42,25 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
         (_, Some(name)) => Chosen::only(name)?,
         _ => Chosen::all(),
     };
-    commission(&arguments.on, &chosen)
+    let answer = if arguments.yes {
+        || Ok(())
+    } else {
+        wait_for_enter
+    };
+    commission(&arguments.on, &chosen, answer)
 }
 
 /// A new payload.
 pub(super) fn tune(on: &Commissioned) -> Result<ExitCode, CliError> {
-    commission(on, &Chosen::tune())
+    commission(on, &Chosen::tune(), wait_for_enter)
 }
 
-fn commission(on: &Commissioned, chosen: &Chosen) -> Result<ExitCode, CliError> {
-    let mut machine = open(on)?;
+fn commission(
+    on: &Commissioned,
+    chosen: &Chosen,
+    answer: fn() -> io::Result<()>,
+) -> Result<ExitCode, CliError> {
+    let mut machine = open(on, answer)?;
     let conditions = conditions(on, machine.as_mut())?;
     let path = on.out.join(RESULTS);
     let earlier = Results::read(&path, &conditions.identity)?;
@@ -79,7 +88,7 @@ fn commission(on: &Commissioned, chosen: &Chosen) -> Result<ExitCode, CliError> 
 
 /// What a loop is: lines and plots, and everything as it was.
 pub(super) fn frf(on: &Commissioned) -> Result<ExitCode, CliError> {
-    let mut machine = open(on)?;
+    let mut machine = open(on, wait_for_enter)?;
     let conditions = conditions(on, machine.as_mut())?;
     let all = steps(machine.as_mut(), &Chosen::response())?;
     let report = on.out.join(RESPONSE);
@@ -91,15 +100,26 @@ pub(super) fn frf(on: &Commissioned) -> Result<ExitCode, CliError> {
 /// Gives back what was before the last run into this folder.
 fn undo(on: &Commissioned) -> Result<ExitCode, CliError> {
     let backup = Backup::read(&on.out.join(BEFORE))?;
-    let changed = backup.give_back(open(on)?.as_mut())?;
+    let changed = backup.give_back(open(on, wait_for_enter)?.as_mut())?;
     say(&format!(
         "{} parameters and {} macros are what they were before, and kept\n",
         changed.parameters, changed.macros
     ))
 }
 
-/// The machine, and the folder.
-fn open(on: &Commissioned) -> Result<Box<dyn Machine>, CliError> {
+/// The person's answer. Nobody there is none: what was asked for may not be done.
+pub(super) fn wait_for_enter() -> io::Result<()> {
+    match io::stdin().read_line(&mut String::new())? {
+        0 => Err(io::Error::new(
+            io::ErrorKind::UnexpectedEof,
+            "nobody is there to press Enter",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// The machine, and the folder. `answer` is waited for where a person has to say that something is done.
+fn open(on: &Commissioned, answer: fn() -> io::Result<()>) -> Result<Box<dyn Machine>, CliError> {
     // Before anything moves: a report that cannot be written is of no use.
     fs::create_dir_all(&on.out).map_err(unwritable(&on.out.join(REPORT)))?;
     if on.machine.is_simulated() {
@@ -112,7 +132,7 @@ fn open(on: &Commissioned) -> Result<Box<dyn Machine>, CliError> {
         Attended::open(
             &endpoint(&on.controller)?,
             |text| eprintln!("{text}"),
-            || io::stdin().read_line(&mut String::new()).map(|_| ()),
+            answer,
         )?
         .with_scale_periods(on.scale_periods),
     ))

@@ -17,6 +17,9 @@ pub(in super::super) struct Commission {
     /// Run this step alone, as after a repair, and keep what it finds.
     #[arg(long, value_name = "STEP", conflicts_with = "list")]
     pub(in super::super) only: Option<String>,
+    /// Do not wait for Enter: the platform is in its jig already. For a step alone, since in all of them it is turned by hand before.
+    #[arg(long, requires = "only")]
+    pub(in super::super) yes: bool,
     /// List the steps; no machine is needed.
     #[arg(long)]
     pub(in super::super) list: bool,
