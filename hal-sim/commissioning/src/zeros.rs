@@ -50,7 +50,7 @@ pub fn zero_errors(tours: &[Tour], how: &Evaluation) -> Result<ZeroErrors, Platf
 
 /// The larger deviation of the two, from how much each part of the tours pulls at them: what gears, motors and friction leave over is alike for a whole move,
 /// so that single rows would promise too much (the covariance of clustered errors, as in Cameron and Miller, "A Practitioner's Guide to Cluster-Robust
-/// Inference", 2015, eq. 11).
+/// Inference", 2015, section II).
 fn deviation(found: &Minimum, left: impl Fn(&DVector<f64>) -> DVector<f64>) -> f64 {
     let slope = |unknown: usize| {
         let moved = |by: f64| {
