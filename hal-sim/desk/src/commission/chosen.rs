@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(names(Chosen::only("friction")), ["friction", "keep"]);
         assert_eq!(
             names(Chosen::from("verification")),
-            ["verification", "keep"]
+            ["verification", "forces", "keep"]
         );
         assert_eq!(names(Chosen::from("wiring")).len(), STEPS.len());
         assert_eq!(
