@@ -3,13 +3,13 @@
 //! Along the tour every ring's torque is linear in what is sought:
 //!
 //! ```text
-//! T = J p'' + Tc z + b p' + T0 + J^-T (M q'' + forces of the turning moment + F z_rho drho/dq + k q)
+//! T = J p'' + Tc z + b p' + T0 + J^-T (M q'' + forces of the turning moment + (F z_rho + c rho') drho/dq + k q)
 //! ```
 //!
 //! z are the contacts that rub, -1 to 1: signs of the rates but for a way of presliding after each reversal (Dahl's). A sign alone would be early
 //! there, and what it is early by is like an inertia.
 //!
-//! M is made of mass, inertia and first moment of platform and payload; F is the friction along the guides, k the cables' stiffness, p the ring angles,
+//! M is made of mass, inertia and first moment of platform and payload; F and c are the friction along the guides, k the cables' stiffness, p the ring angles,
 //! q the pose. Angles give the pose by the direct kinematics ([`kinematics::direct()`]); all signals are smoothed alike before anything is
 //! derived, so that what smoothing takes from one side it takes from the other.
 //!
@@ -104,9 +104,9 @@ pub enum PlatformError {
 pub const MOST_CONDITION: f64 = 100.0;
 /// More that is left is refused.
 pub const MOST_RESIDUAL: f64 = 0.25;
-const UNKNOWNS: usize = 18;
+const UNKNOWNS: usize = 19;
 /// The first of those that say how much more a torque is than it is told, of rings 2 and 3 beside ring 1.
-const GAINS: usize = 16;
+const GAINS: usize = 17;
 
 /// What is carried, by linear least squares.
 ///
@@ -352,12 +352,13 @@ fn equations(
     // A moment along the base's x or y: M q'' and the centrifugal force of it.
     let along_x = Vector3::new(-turning, a.z, a.y);
     let along_y = Vector3::new(-a.z, -turning, -a.x);
-    let mut rubbing = Vector3::zeros();
+    let (mut rubbing, mut sliding) = (Vector3::zeros(), Vector3::zeros());
     for (guide, contact) in guides.iter().zip(&rubs[3..]) {
         let offset_by_pose = Vector3::new(-guide.sin, guide.cos, -guide.projection);
         let by_pose = -(offset_by_pose * (guide.offset / guide.cosine))
             - Vector3::new(guide.cos, guide.sin, guide.offset);
         rubbing += by_pose * *contact;
+        sliding += by_pose * by_pose.dot(&twist);
     }
     let columns = [
         to_rings * Vector3::new(a.x, a.y, 0.0),
@@ -366,9 +367,10 @@ fn equations(
         to_rings * (along_y * cos - along_x * sin),
         Vector3::from(accelerations),
     ];
-    let [guide, cable] = [
+    let [guide, cable, guide_viscous] = [
         to_rings * rubbing,
         to_rings * Vector3::new(now.x, now.y, 0.0),
+        to_rings * sliding,
     ];
     let mut rows = [[0.0; UNKNOWNS]; 3];
     for (i, row) in rows.iter_mut().enumerate() {
@@ -380,6 +382,7 @@ fn equations(
         row[11] = guide[i];
         row[12] = cable[i];
         row[13 + i] = 1.0;
+        row[16] = guide_viscous[i];
     }
     Some((
         rows,

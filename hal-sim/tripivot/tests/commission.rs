@@ -21,7 +21,7 @@ const MOST_CONSTANT_ERROR_AGAIN: f64 = 0.006;
 const MOST_FRICTION_ERROR_AGAIN: f64 = 0.0096;
 
 /// And of zeros by forces, mrad.
-const MOST_ZERO_ERROR_MRAD: f64 = 5.2;
+const MOST_ZERO_ERROR_MRAD: f64 = 3.7;
 
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("tripivot-{name}-{}", std::process::id()));

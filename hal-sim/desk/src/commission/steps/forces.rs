@@ -35,14 +35,15 @@ const SLOW_MOVES: usize = 3;
 const SLOWLY: f64 = 0.1;
 /// Longest of them, slowly and at full speed, s.
 const LONGEST_S: [f64; 2] = [60.0, 10.0];
-/// Rows of a move's record, one a tick.
+/// Rows of a move's record, and ticks a row: to the end of most moves, so that they brake as often as they accelerate.
 const ROWS: usize = 2_000;
+const EVERY: usize = 2;
 /// Shorter than a move's acceleration.
 const SMOOTHING_S: f64 = 0.004;
 /// Way that a carriage preslides, track radii: as on the reference stage.
 const GUIDES_PRESLIDING: f64 = 2e-4;
 /// Most that a zero may be off the mean of all, and that it may be uncertain by (one standard deviation), rad: one that is off by 30 mrad is 20 off
-/// the mean, and moves the platform by 2 mm. Sound machines are told to be off by up to 17, most of it what gears and motors do at single angles.
+/// the mean, and moves the platform by 2 mm. Sound machines are told to be off by up to 14, most of it what gears and motors do at single angles.
 const MOST_OFF_RAD: f64 = 0.02;
 const MOST_UNCERTAIN_RAD: f64 = 0.008;
 const UNSURE: &str = "friction that changes hides it: look for what rubs, then once more; or find the zeros in the jig (--only zeros)";
@@ -116,14 +117,14 @@ fn tours(
     bench.reserve(ROWS)?;
     let mut tours = Vec::new();
     for line in (0..ROUNDS).flat_map(lines) {
-        let signals = bench.record_all(ROWS, 1, &line)?;
+        let signals = bench.record_all(ROWS, EVERY, &line)?;
         bench.wait_for_target(LONGEST_S[1])?;
         let torque_n_m = std::array::from_fn(|pivot| {
             let current = signals[pivot].current_a.iter();
             current.map(|one| motor_constants[pivot] * one).collect()
         });
         tours.push(Tour {
-            step_s: bench.period_s,
+            step_s: bench.period_s * EVERY as f64,
             angle_rad: signals.map(|one| one.angle_rad),
             torque_n_m,
         });
