@@ -388,7 +388,10 @@ impl<'a> Effects<'a> {
                 self.same[i] >= SAME_TICKS || (is_moving && self.same[i] >= bridged)
             }),
             Effect::Overspeed | Effect::BrieflyOverspeed if self.driven == 0 => false,
-            Effect::Overspeed => self.fast.iter().any(|&ticks| ticks >= LOOK_TICKS),
+            // One that was too fast before it was driven is looked at from then on.
+            Effect::Overspeed => {
+                (self.fast.iter()).any(|&ticks| ticks.min(self.driven) >= LOOK_TICKS)
+            }
             Effect::BrieflyOverspeed => self.fast.iter().any(|&ticks| ticks > 0),
             Effect::AtEnd => self.at_end.iter().any(|&ticks| ticks > longest),
             Effect::NearlyAtEnd => self.nearly.iter().any(|&ticks| ticks > longest),

@@ -14,7 +14,7 @@ use crate::rig::{Told, with_gains_fitted, with_motion_fitted, with_wiring_told};
 
 /// The tick from which on the stage is held, after `FRF`, and the ticks in which something may break meanwhile.
 const HELD: u64 = 16;
-const REFERENCING: u32 = 14;
+const REFERENCING: u32 = 12;
 
 /// A run before it is run.
 #[derive(Clone, Debug)]
@@ -89,8 +89,8 @@ impl Scenario {
 fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     let in_motion = FIRST_MOTION + u64::from(random.below(MOTION_TICKS));
     let just_held = motion.watched_from.max(HELD) + u64::from(random.below(60));
-    // From the line to the stage that is held, and a little before.
-    let in_reference = motion.referenced_at - 2 + u64::from(random.below(REFERENCING));
+    // From the line to the stage that is held. Before it an encoder that is lost is no fault: the line is refused.
+    let in_reference = motion.referenced_at + u64::from(random.below(REFERENCING));
     let mut stops = motion
         .lines
         .iter()
