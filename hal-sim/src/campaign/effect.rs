@@ -29,9 +29,10 @@ const SAME_TICKS: u64 = 20;
 const MOVING_RAD_S: f64 = 0.01;
 /// Ticks from one look at a pivot to the next: longer than that over a threshold, and it has been looked at.
 const LOOK_TICKS: u64 = 4;
-/// Share of a motor's largest current from which it is held at its limit for certain, and from which it may be.
+/// Share of a motor's largest current from which it is held at its limit for certain, and from which it may be: behind a jam that drives it to 8 A
+/// the limit holds it an eighth under for some ticks.
 const LIMITED: f64 = 0.995;
-const NEARLY_LIMITED: f64 = 0.9;
+const NEARLY_LIMITED: f64 = 0.85;
 /// What the heat may be under its threshold for one who sees every fourth sample of the current.
 const NEARLY: f64 = 0.99;
 /// A following error, over its limit, that is one for certain, and that may be one: the judge's numbers are not the controller's to the bit.
@@ -165,6 +166,8 @@ pub struct Effects<'a> {
     last: [u32; AXES],
     same: [u64; AXES],
     fast: [u64; AXES],
+    at_full: [u64; AXES],
+    /// The same, or at its largest current.
     at_end: [u64; AXES],
     /// The same with short pauses, and ticks of the pause.
     nearly: [u64; AXES],
@@ -197,6 +200,7 @@ impl<'a> Effects<'a> {
             last: [0; AXES],
             same: [0; AXES],
             fast: [0; AXES],
+            at_full: [0; AXES],
             at_end: [0; AXES],
             nearly: [0; AXES],
             pause: [0; AXES],
@@ -285,7 +289,9 @@ impl<'a> Effects<'a> {
             let current_a = f64::from(now.current_counts[i]) * CURRENT_A_PER_COUNT;
             let most_a = self.parameters.power.current_limit_a;
             let is_limited = |share: f64| current_a.abs() >= share * most_a;
-            self.at_end[i] = goes_on(self.at_end[i], duty >= full - 0.5 || is_limited(LIMITED));
+            let is_full = duty >= full - 0.5;
+            self.at_full[i] = goes_on(self.at_full[i], is_full);
+            self.at_end[i] = goes_on(self.at_end[i], is_full || is_limited(LIMITED));
             let pauses = duty < full - 1.0 && !is_limited(NEARLY_LIMITED);
             self.pause[i] = goes_on(self.pause[i], pauses);
             self.nearly[i] = goes_on(self.nearly[i], self.pause[i] < LOOK_TICKS);
@@ -393,7 +399,10 @@ impl<'a> Effects<'a> {
                 (self.fast.iter()).any(|&ticks| ticks.min(self.driven) >= LOOK_TICKS)
             }
             Effect::BrieflyOverspeed => self.fast.iter().any(|&ticks| ticks > 0),
-            Effect::AtEnd => self.at_end.iter().any(|&ticks| ticks > longest),
+            // A motor that asks for hardly more than its current's limit is limited in some ticks only, until its integral asks for more.
+            Effect::AtEnd => {
+                (0..AXES).any(|i| self.at_full[i] > longest || self.at_end[i] > 2 * longest)
+            }
             Effect::NearlyAtEnd => self.nearly.iter().any(|&ticks| ticks > longest),
             Effect::Hot => self.heat.iter().any(|&heat| heat > bearable),
             Effect::NearlyHot => self.heat.iter().any(|&heat| heat > NEARLY * bearable),
