@@ -15,10 +15,10 @@ const ALIGN_SHIFT: u32 = 32 - POSITION_BITS;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderConfig {
     zero: u32,
+    /// What of the largest believable change is no slip, 2^-32 turns.
+    ordinary_step_change: u32,
     /// Largest believable change of the step from tick to tick, 2^-32 turns.
     max_step_change: u32,
-    /// What of it is no slip.
-    ordinary_step_change: u32,
     /// How much later than the first port it latches, 2^-23 ticks.
     latch_offset: i16,
     /// 1, or -1 where the encoder counts against the pivot's direction.
