@@ -27,8 +27,6 @@ pub(super) struct Motion {
     pub pressed: Option<[u64; 2]>,
     /// The tick after which it is forgotten.
     pub watched_from: u64,
-    /// The tick after which it is referenced for the motion.
-    pub referenced_at: u64,
 }
 
 impl Motion {
@@ -70,11 +68,6 @@ impl Motion {
             lines,
             pressed: is_after_fault.then_some(PRESSED),
             watched_from: if is_after_fault { HELD_AGAIN } else { 0 },
-            referenced_at: if is_after_fault {
-                REFERENCED_AGAIN
-            } else {
-                REFERENCE
-            },
         }
     }
 }
@@ -86,7 +79,15 @@ impl Motion {
         self.lines.retain(|(at, _)| !is_of_it(*at));
         self.pressed = None;
         self.watched_from = 0;
-        self.referenced_at = REFERENCE;
+    }
+
+    /// The tick after which it is referenced for the motion.
+    pub const fn referenced_at(&self) -> u64 {
+        if self.pressed.is_some() {
+            REFERENCED_AGAIN
+        } else {
+            REFERENCE
+        }
     }
 }
 

@@ -90,7 +90,7 @@ fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     let in_motion = FIRST_MOTION + u64::from(random.below(MOTION_TICKS));
     let just_held = motion.watched_from.max(HELD) + u64::from(random.below(60));
     // From the line to the stage that is held. Before it an encoder that is lost is no fault: the line is refused.
-    let in_reference = motion.referenced_at + u64::from(random.below(REFERENCING));
+    let in_reference = motion.referenced_at() + u64::from(random.below(REFERENCING));
     let mut stops = motion
         .lines
         .iter()

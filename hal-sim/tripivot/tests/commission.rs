@@ -1,12 +1,13 @@
 //! `tripivot commission` on machines as workshops build them: those that are sound are brought up, the others refused where it shows.
 
-use desk::commission::{Backup, Machine};
+use desk::commission::{Backup, Chosen, Machine, run};
 use firmware::control::servo::BorneLimits;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tripivot::attended::SimulatedMachine;
@@ -487,7 +488,6 @@ fn the_steps_are_listed_without_a_machine() {
 }
 
 /// What a person has to do is done when somebody says so: by Enter, or by `--yes`. A closed input says nothing.
-#[cfg(unix)]
 #[test]
 fn nobody_at_the_keyboard_is_no_answer() {
     let mut served = Command::new(env!("CARGO_BIN_EXE_tripivot"))
@@ -513,7 +513,19 @@ fn nobody_at_the_keyboard_is_no_answer() {
             .output()
             .expect("the program runs")
     };
+    let mut client = TcpStream::connect(address).expect("a connection");
+    let mut answers = BufReader::new(client.try_clone().expect("the same"));
+    let mut gain = |set: &str| {
+        let lines = format!("{set}SPA? 1 0x54500300\n");
+        client.write_all(lines.as_bytes()).expect("it is there");
+        let mut answer = String::new();
+        answers.read_line(&mut answer).expect("an answer");
+        answer
+    };
+    let kept = gain("");
+    let tried = gain("CCL 1 ADVANCED\nSPA 1 0x54500300 123\n");
     let refused = zeros(&[]);
+    let in_force = gain("");
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
     let done = zeros(&["--yes"]);
     // Dead already, if it has failed.
@@ -523,6 +535,23 @@ fn nobody_at_the_keyboard_is_no_answer() {
     assert_eq!(refused.status.code(), Some(1), "{said}");
     assert!(said.contains("nobody is there to press Enter"), "{said}");
     assert!(text(&refused).is_empty());
+    // What is kept is in force again.
+    assert_ne!(tried, kept);
+    assert_eq!(in_force, kept);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done));
     assert!(text(&done).contains("zero of encoder 3"));
+}
+
+#[test]
+fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
+    let mut stage = StageParameters::REFERENCE;
+    // A gap through which no servo of it holds still.
+    stage.plant.backlash_rad = 5e-3;
+    let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory());
+    let speed = machine.ask("VLS?").expect("it answers");
+    let chosen = Chosen::only("reference").expect("a step");
+    let all = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
+    let failure = all[0].failure.as_ref().expect("a failure");
+    println!("{failure:?}");
+    assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
 }

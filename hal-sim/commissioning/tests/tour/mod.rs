@@ -1,7 +1,5 @@
 //! A tour of a simulated machine, and the same of a body in closed form.
 
-#![allow(dead_code)] // Each test file uses its part.
-
 use super::machine::{Machine, TIMING, Want};
 use commissioning::platform::{Evaluation, Tour};
 use hal_sim::machine::devices::StageParameters;

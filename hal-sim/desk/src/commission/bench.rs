@@ -317,6 +317,17 @@ impl<'a> Bench<'a> {
         Ok(self.number("LST?", PEAK)?)
     }
 
+    /// The same at a share of the speed, which is as before afterwards, whatever came of the moves: no `RPA` brings it back.
+    pub fn follow_slowly(&mut self, share: f64, moves: &[&str], seconds: f64) -> Result<f64> {
+        let full = self.number_of("VLS?")?;
+        self.ask(&format!("VLS {}", full * share))?;
+        let followed = self.follow(moves, seconds);
+        let given_back = self.ask(&format!("VLS {full}"));
+        let largest_rad = followed?;
+        given_back?;
+        Ok(largest_rad)
+    }
+
     /// Gives records so many rows: not in motion. Records that are shorter may then be made in motion.
     pub fn reserve(&mut self, rows: usize) -> Answered<()> {
         // Fewer tables leave room for more rows.

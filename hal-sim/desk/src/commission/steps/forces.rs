@@ -24,6 +24,7 @@ const MOVES: [[f64; 3]; 12] = [
     [0.0, 0.0, 90.0],
     [0.0, 0.0, 0.0],
 ];
+const HOME: &str = "MOV X 0 Y 0 W 0";
 /// Rounds, each at other angles of all rings: what gears, motors and bearings do at one angle does not repeat in the next.
 const ROUNDS: usize = 8;
 /// What a round is turned by, about the middle and about the platform's own, rad and deg.
@@ -86,14 +87,10 @@ pub(super) fn run(
 }
 
 fn look_slowly(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
-    let full = bench.number_of("VLS?")?;
-    bench.ask(&format!("VLS {}", full * SLOWLY))?;
-    let first = lines(0).take(SLOW_MOVES);
-    let lines: Vec<_> = first.chain(["MOV X 0 Y 0 W 0".to_owned()]).collect();
-    let lines: Vec<_> = lines.iter().map(String::as_str).collect();
-    let followed = bench.follow(&lines, LONGEST_S[0]);
-    bench.ask(&format!("VLS {full}"))?;
-    followed.map(drop)
+    let lines: Vec<_> = lines(0).take(SLOW_MOVES).collect();
+    let mut lines: Vec<_> = lines.iter().map(String::as_str).collect();
+    lines.push(HOME);
+    bench.follow_slowly(SLOWLY, &lines, LONGEST_S[0]).map(drop)
 }
 
 /// The moves of a round.
@@ -129,7 +126,7 @@ fn tours(
             torque_n_m,
         });
     }
-    bench.ask("MOV X 0 Y 0 W 0")?;
+    bench.ask(HOME)?;
     bench.wait_for_target(LONGEST_S[1])?;
     Ok(tours)
 }

@@ -30,11 +30,8 @@ pub(super) fn run(
     bench.commission()?;
     bench.ask("FRF")?;
     let settled_s = bench.settle()?;
-    let full = bench.number_of("VLS?")?;
-    bench.ask(&format!("VLS {}", full * SPEED))?;
-    let followed = bench.follow(&MOVES, LONGEST_S);
+    let followed = bench.follow_slowly(SPEED, &MOVES, LONGEST_S);
     let error_rad = unless_hunting(bench, followed)?;
-    bench.ask(&format!("VLS {full}"))?;
     found.push(Finding::told(
         "settled after the reference in",
         format!("{settled_s:.2} s"),
