@@ -63,7 +63,7 @@ const TAIL: &str = "
 
 | what | what happens |
 |---|---|
-| an encoder's warning bit | an event (`EVT?`) when it begins and when it ends; the position is good |
+| an encoder's warning bit, in two good frames in a row | an event (`EVT?`) when it begins and when it ends; the position is good |
 | no host heard for longer than `HBT` or parameter 0x54500510 allow: one of the connections that have sent `HBT`, or, for the parameter, none at all | the stop of `STP`, error 10, an event: a stage that stands under its servo is safer than one whose motors are off |
 | the command queue is full | the command is refused whole with error 1005, nothing moves; the loop never waits |
 | a restart by a watchdog, a panic, a processor fault, a dip of the supply or a crystal that stops | the outputs are cut first, whatever hangs: the tick feeds a window watchdog that cuts them half a millisecond after the last one. Found at the next start: `FLT?` tells it, and `EVT?` the place in the program with it; the motors are off and the reference is gone |

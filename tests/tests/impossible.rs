@@ -96,8 +96,8 @@ fn fault_of_lines(places_mm: &[f64], theta_deg: f64, parameters: &Parameters) ->
     }
     commands.send(Command::Reference).expect("room");
     let mut at = None;
-    // Commands wait until the bridges are awake.
-    for _ in 0..60 {
+    // Commands wait until the bridges are awake and the leads tested.
+    for _ in 0..80 {
         host.tick(&mut tick_queues, &mut ());
         at = commands.snapshot().or(at);
     }
@@ -189,10 +189,12 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
         }
         commands.send(Command::Reference).expect("room");
         let mut last = None;
-        for _ in 0..100 {
+        for tick in 0..600 {
             let outputs = host.tick(&mut tick_queues, &mut ());
             let largest = outputs.duty.iter().map(|duty| duty.0.abs()).max();
-            assert!(largest <= Some(57), "{largest:?}");
+            // Leads are tested with 4 V, and the dead time; what that has stirred up is gone in 10 ms.
+            let most = if tick < 300 { 400 } else { 57 };
+            assert!(largest <= Some(most), "{tick}: {largest:?}");
             last = commands
                 .snapshot()
                 .map(|now| (now.mode, outputs.awake))

@@ -24,7 +24,8 @@ fn worst_off(stage: &StageParameters, told: &Parameters) -> [f64; 3] {
     let mut bench = Bench::told(&stage, told);
     bench.run(20);
     assert_eq!(bench.error_after("FRF"), "0");
-    bench.settle();
+    // Without friction nothing takes away what the test of the leads has stirred up.
+    bench.run(1_000);
     assert_eq!(bench.error_after("JOG W 360"), "0");
     bench.run(10_000);
     let mut worst = [0.0f64; 3];

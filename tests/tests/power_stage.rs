@@ -189,6 +189,63 @@ fn a_resistor_is_tested_while_the_bridges_wake_up() {
     }
 }
 
+/// While the stage rests: what breaks then, or has its converter stuck, is told within two seconds and the tests; a motion that comes in between
+/// is none the worse for it, and a resistor that works is none for ten seconds.
+#[test]
+fn a_resistor_is_tested_while_the_stage_rests() {
+    use BrakeResistorFault::{Open, StuckOn};
+    type Breaks = fn(&mut Bench);
+    let breaks: [(&str, Breaks); 3] = [
+        ("open", |bench| {
+            let stage = &mut bench.rig.front.stage;
+            stage.set_brake_resistor_fault(Some(Open));
+        }),
+        ("stuck on", |bench| {
+            let stage = &mut bench.rig.front.stage;
+            stage.set_brake_resistor_fault(Some(StuckOn));
+        }),
+        ("sensor stuck", |bench| {
+            bench.rig.front.stage.stick_supply_sensor();
+        }),
+    ];
+    for (what, breaks) in breaks {
+        let mut bench = Bench::new(&machine());
+        assert_eq!(bench.error_after("FRF"), "0");
+        bench.settle();
+        breaks(&mut bench);
+        let at = bench.sample().tick;
+        for _ in 0..41_000 {
+            bench.tick();
+        }
+        let fault = bench.fault().expect("a fault");
+        println!("{what}: {fault}");
+        assert_eq!(fault.kind, FaultKind::BrakeResistorDead);
+        assert!(fault.tick - at < 40_300, "{}", fault.tick - at);
+        assert_eq!(bench.mode(), Mode::Fault);
+    }
+    let mut bench = Bench::new(&machine());
+    assert_eq!(bench.error_after("FRF"), "0");
+    bench.settle();
+    let mut pulses = 0;
+    let mut was_on = false;
+    for _ in 0..200_000 {
+        bench.tick();
+        let is_on = bench.outputs.brake_resistor;
+        pulses += u32::from(is_on && !was_on);
+        was_on = is_on;
+    }
+    assert_eq!((bench.fault(), pulses), (None, 10), "two for each test");
+    // Moves that begin in every tick of a test: it ends, and says nothing.
+    for delay in 0..45 {
+        bench.settle();
+        bench.run_until("a test", |bench| bench.outputs.brake_resistor);
+        bench.run(delay);
+        bench.send("MVR X 0.5\n");
+        bench.run(20);
+        assert!(bench.fault().is_none() && !bench.outputs.brake_resistor);
+    }
+}
+
 /// `TST?` tells what the test has seen.
 #[test]
 fn what_the_resistor_draws_is_told() {

@@ -46,7 +46,7 @@ fn no_trial_is_worse_than_without_a_table() {
     for (told, state, largest, last) in [
         (
             "SPA 1 0x54500807 0.001 1 0x54500802 0.3 1 0x54500513 20\n",
-            "stopped",
+            "learning",
             0.84,
             0.69,
         ),

@@ -18,8 +18,8 @@ use hal_sim::machine::devices::{EncoderFault, StageParameters};
 
 /// Ticks in which a command is taken and told.
 const SOON: u32 = 4;
-/// Ticks in which bridges wake up, and commands wait.
-const WAKING: u32 = 41;
+/// Ticks in which bridges wake up and leads are tested, and commands wait.
+const WAKING: u32 = 61;
 /// Ticks of any of the motions here.
 const LONG: u32 = 20_000;
 

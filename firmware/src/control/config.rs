@@ -1,5 +1,6 @@
 //! What the tick computes with, derived once from the parameters.
 
+use crate::control::brake_resistor_test::REST_PERIOD_S;
 use crate::control::encoder::EncoderConfig;
 use crate::control::guides::GuideConfig;
 use crate::control::held_position::PositionSteps;
@@ -87,6 +88,8 @@ pub struct SupervisionConfig {
     pub slow_acceleration: f32,
     /// What is left of counted reversals from one inspection to the next.
     pub oscillation_memory: f32,
+    /// Ticks of rest from one test of the brake resistor to the next.
+    pub resistor_test_ticks: u32,
     /// Ticks in a second.
     pub rate_hz: f32,
 }
@@ -166,6 +169,7 @@ impl Config {
                 oscillation_memory: libm::exp(
                     -f64::from(INSPECTION_PERIOD_TICKS) * period_s / MEMORY_S,
                 ) as f32,
+                resistor_test_ticks: (REST_PERIOD_S * rate_hz) as u32,
                 rate_hz: rate_hz as f32,
             },
             fault_stop: FaultStop::new(supervision.stop_s, rate_hz),

@@ -90,7 +90,8 @@ pub struct Encoder {
     good_frames: u8,
     /// Bad frames in a row.
     bad_frames: u8,
-    warning: bool,
+    /// Good frames in a row that warn, up to [`WARNING_FRAMES`].
+    warning_frames: u8,
     /// Ready, with no bad frame to make up for, no warning and no doubt: the next frame need only be plausible.
     fast_path: bool,
     /// Why it is not ready, if it is not.
@@ -114,7 +115,7 @@ impl Default for Encoder {
             step: 0,
             good_frames: 0,
             bad_frames: 0,
-            warning: false,
+            warning_frames: 0,
             fast_path: false,
             // Until a frame says otherwise.
             unusable: Some(FaultKind::EncoderSilent),
@@ -129,6 +130,8 @@ impl Default for Encoder {
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
 const READY_FRAMES: u8 = 4;
+/// Good frames in a row whose warning is believed: the CRC lets one in 64 of heavily damaged ones through.
+const WARNING_FRAMES: u8 = 2;
 /// The change of the step, 2^-32 turns, that a pivot reaches: 83 counts, 7.8 urad, 3,125 rad/s^2. Motors make 600, resonances that ring some
 /// 1,000; a blow makes more. What is more between two good frames is believed and told: the encoder has slipped, if nothing has hit the
 /// machine. Each tick that was bridged adds what it may have been off: a step of 117 urad is told behind four.
@@ -180,7 +183,11 @@ impl Encoder {
     ) {
         match decode(frame) {
             Ok(reading) => {
-                self.warning = reading.warning;
+                self.warning_frames = if reading.warning {
+                    (self.warning_frames + 1).min(WARNING_FRAMES)
+                } else {
+                    0
+                };
                 let fraction = config.fraction(subdivision, reading.counts);
                 if self.is_frozen(fraction) && !self.is_rate_doubtful {
                     self.bridge_missing(config, FaultKind::EncoderFrozen);
@@ -200,7 +207,7 @@ impl Encoder {
         }
         self.fast_path = self.good_frames == READY_FRAMES
             && self.bad_frames == 0
-            && !self.warning
+            && self.warning_frames == 0
             && !self.is_rate_doubtful;
     }
 
@@ -335,7 +342,7 @@ impl Encoder {
 
     /// Whether the encoder warns.
     pub fn warning(&self) -> bool {
-        self.warning
+        self.warning_frames == WARNING_FRAMES
     }
 
     /// Moves the angle by whole turns to the one nearest to `reference`.

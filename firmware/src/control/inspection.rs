@@ -21,6 +21,9 @@ pub(super) struct PivotWatch {
     pub saturated_ticks: u32,
     /// Ticks in which the motor's current was not what its voltage drives.
     pub unexplained_ticks: u32,
+    /// The current's last reading, ADC counts, and what the model of the current (knees) was when it was read for the first time.
+    pub current_counts: i16,
+    pub model_then: f32,
     /// The feedback's voltage.
     pub oscillation: OscillationWatch,
     /// Duty when the encoder last showed something new.

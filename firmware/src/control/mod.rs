@@ -17,7 +17,8 @@
 //! | `calibrated` | the same of a machine that is calibrated, and the pose of its encoders |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
 //! | `brake_resistor` | what takes the energy that the motors give back |
-//! | `brake_resistor_test` | whether it does, while the bridges wake up |
+//! | `brake_resistor_test` | whether it does, while the bridges wake up and at rest |
+//! | `lead_test` | whether the motors' leads carry what they should, at servo on |
 //! | `excitation/` | a known voltage on a motor, to see what the machine is |
 //! | `excited` | the tick of an excitation with the servo off |
 //! | `trial` | trials of iterative learning |
@@ -43,6 +44,7 @@ mod excited;
 mod guides;
 pub mod held_position;
 mod inspection;
+mod lead_test;
 pub mod loop_counters;
 mod next_setpoint;
 mod observers;

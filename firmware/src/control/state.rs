@@ -7,6 +7,7 @@ use super::encoder::Encoder;
 use super::excitation::ExcitationRun;
 use super::guides::Guides;
 use super::inspection::PivotWatch;
+use super::lead_test::LeadTest;
 use super::loop_counters::LoopCounters;
 use super::pivot_setpoints::NextSetpoint;
 use super::rest_mode::RestMode;
@@ -92,6 +93,8 @@ pub struct State {
     pub(super) bad_supply_ticks: u8,
     /// Ticks left of those in which the bridges wake up and the brake resistor is tested: no duty, nothing collected, and commands wait.
     pub(super) waking_ticks: u32,
+    /// Behind that, at servo on.
+    pub(super) lead_test: LeadTest,
     /// Fault pins in the tick before, while the bridges are awake (index: pivot).
     pub(super) bridge_faults: [bool; 3],
     pub(super) brake_resistor: BrakeResistor,
@@ -156,6 +159,11 @@ impl State {
     /// Whether the servo drives the motors.
     pub(super) fn servo_on(&self) -> bool {
         matches!(self.mode, Mode::Holding | Mode::Moving | Mode::Stopping)
+    }
+
+    /// Whether the bridges wake up, or motors and brake resistor are tested before anything is driven.
+    pub(super) fn is_waking(&self) -> bool {
+        self.waking_ticks != 0 || self.lead_test.is_under_way()
     }
 
     /// Whether anything drives the motors.

@@ -75,7 +75,8 @@ pub fn tick_and_drive<'a>(
     state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
 
     state.check_inputs(config, inputs);
-    let is_pulsed = state.waking_ticks != 0 && state.test_brake_resistor(inputs.supply_counts);
+    let is_pulsed =
+        state.brake_resistor.test.is_under_way() && state.test_brake_resistor(inputs.supply_counts);
     let (supply_counts, rate_hz) = (inputs.supply_counts, config.limits.rate_hz);
     let switched = (state.brake_resistor).update(supply_counts, rate_hz, is_pulsed);
     if let Some((kind, [value, limit])) = switched {
@@ -119,7 +120,7 @@ pub fn tick_and_drive<'a>(
     let now = (state.mode, state.commands);
     let is_told = now == state.told_mode_and_commands;
     // Taken below, by this tick. While the bridges wake up it waits: whatever it asks for, nothing could drive yet.
-    let takes = has_time && (is_told || !calibrated) && state.waking_ticks == 0;
+    let takes = has_time && (is_told || !calibrated) && !state.is_waking();
     let commanded = takes && queues.commands.ready();
     if calibrated {
         if let Some(wanted) = &state.next.pivots {
@@ -219,8 +220,8 @@ impl State {
             *pivot = *target;
         }
         let (errors, worst) = self.following_errors(config, pivots, target)?;
-        if self.waking_ticks != 0 {
-            return Some(self.wait_for_bridges(&errors));
+        if self.is_waking() {
+            return Some(self.wait_for_bridges(config, &errors, currents));
         }
         let moving = self.next.moving;
         (self.settling).update(&config.limits, &errors, worst, moving);
@@ -261,17 +262,26 @@ impl State {
     }
 
     /// Whether the next setpoint is the one that is followed now, and known.
-    fn setpoint_rests(&self) -> bool {
+    pub(super) fn setpoint_rests(&self) -> bool {
         self.mode == Mode::Holding && !self.motion.is_moving() && self.next.pivots.is_some()
     }
 
-    /// A tick in which the bridges wake up: no duty, and nothing is collected, settled or learnt from what no motor could follow.
+    /// A tick in which the bridges wake up, or the leads are tested: nothing is collected, settled or learnt from what no motor could
+    /// follow.
     #[cold]
-    fn wait_for_bridges(&mut self, errors: &[i32; 3]) -> [Duty; 3] {
-        self.waking_ticks -= 1;
+    fn wait_for_bridges(
+        &mut self,
+        config: &Config,
+        errors: &[i32; 3],
+        currents: &[i16; 3],
+    ) -> [Duty; 3] {
         for (servo, error) in self.servo.iter_mut().zip(errors) {
             servo.stand_by(*error);
         }
+        if self.waking_ticks == 0 {
+            return self.test_leads(config, errors, currents);
+        }
+        self.waking_ticks -= 1;
         [Duty(0); 3]
     }
 

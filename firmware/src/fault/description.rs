@@ -173,7 +173,7 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::CurrentUnexplained,
-        detection: "a motor's measured current apart from what its voltage should drive, by the servo's model (voltage less back-EMF over the winding's resistance), by more than a threshold and 60 % of that, for 3 ms while driven, its voltage and current not at their limits; and by more than the threshold from none for 0.1 s with the servo off, on a commissioned machine. Each motor every fourth tick, unless that takes a command",
+        detection: "a motor's measured current apart from what its voltage should drive, by the servo's model (voltage less back-EMF over the winding's resistance), by more than a threshold and 60 % of that, for 3 ms while driven, its voltage and current not at their limits; or gone by half the threshold, by the model, while its reading has stayed the same to the bit; and by more than the threshold from none for 0.1 s with the servo off, on a commissioned machine. Each motor every fourth tick. At every servo on, before anything is driven, 4 V to and fro for 0.4 ms have to drive two fifths of what they should in each motor, both ways; half the threshold may be missing in any case",
         thresholds: &[0x5450_0513],
         reason: "a lead, a bridge, a winding or the sensor is not as it should be: what is asked of that motor it does not do, and braking asks nothing",
     },
@@ -191,8 +191,8 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::BrakeResistorDead,
-        detection: "while the bridges wake up, at every servo on and excitation, the brake resistor is switched on twice for 0.4 ms: three times in a row the supply does not drop by 64 mV; where it works, by 0.1 V at least. Not where a supply over 54 V has it on",
+        detection: "while the bridges wake up, at every servo on and excitation, and every 2 s while the stage rests under its servo, the brake resistor is switched on twice for 0.4 ms: three times in a row the supply does not drop by 64 mV; where it works, by 0.1 V at least. Not where a supply over 54 V has it on",
         thresholds: &[],
-        reason: "open, on for good, or not there: nothing drives what nothing could brake, and nothing has moved yet",
+        reason: "open, on for good, or not there, or the supply's converter is stuck: nothing drives what nothing could brake, and nothing moves",
     },
 ];

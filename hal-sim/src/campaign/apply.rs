@@ -53,9 +53,12 @@ impl Injection {
                     host.stage.encoders[second(axis)].set_fault(EncoderFault::StuckLow);
                 }
             }
-            Self::Jam | Self::Knock(_) | Self::HotMotor(_) | Self::Runaway(_) | Self::Wedged => {
-                self.push(&mut host.stage.plant, axis, age)
-            }
+            Self::Jam
+            | Self::Knock(_)
+            | Self::HotMotor(_)
+            | Self::Runaway(_)
+            | Self::Wedged
+            | Self::PushedExcited(_) => self.push(&mut host.stage.plant, axis, age),
             Self::FewMissedTicks(ticks) if age >= u64::from(ticks) * MISSED_EVERY => {}
             Self::FewMissedTicks(_) | Self::LateLoop => {
                 if age.is_multiple_of(MISSED_EVERY) {
@@ -159,7 +162,11 @@ impl Injection {
             Self::HotMotor(torque_n_m) => {
                 external.ring_torque_n_m[axis] = torque_n_m * risen(age);
             }
-            Self::Knock(torque_n_m) | Self::Runaway(torque_n_m) if age == 0 => {
+            Self::Knock(torque_n_m)
+            | Self::Runaway(torque_n_m)
+            | Self::PushedExcited(torque_n_m)
+                if age == 0 =>
+            {
                 external.ring_torque_n_m[axis] = torque_n_m;
             }
             Self::Knock(_) if age == KNOCK_TICKS => {}

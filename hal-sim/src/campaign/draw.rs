@@ -17,7 +17,7 @@ impl Injection {
         let kind = random.below(NAMES.len() as u32);
         match kind {
             0..24 => Self::plain(kind, random, bridged, stage),
-            _ => Self::subtle(kind, random, bridged),
+            _ => Self::subtle(kind, random, bridged, stage),
         }
     }
 
@@ -61,7 +61,7 @@ impl Injection {
         }
     }
 
-    fn subtle(kind: u32, random: &mut Random, bridged: u8) -> Self {
+    fn subtle(kind: u32, random: &mut Random, bridged: u8, stage: &StageParameters) -> Self {
         match kind {
             24 => Self::Crash,
             25 => Self::SupplyHigh(random.between(60.5, 64.0)),
@@ -94,7 +94,14 @@ impl Injection {
             44 => Self::Slip(random.between(SMALLEST_SLIP_RAD, LARGEST_SLIP_RAD) * random.sign()),
             45 => Self::CurrentStuck,
             46 => Self::SupplyStuck,
-            _ => Self::NewerSettings,
+            47 => Self::NewerSettings,
+            _ => {
+                // From what hardly moves it against its friction on, to what is too fast at once.
+                let plant = &stage.plant;
+                let friction_n_m = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
+                let more_n_m = 0.3 * random.between(0.0, 5.0).exp();
+                Self::PushedExcited((friction_n_m + more_n_m) * random.sign())
+            }
         }
     }
 }

@@ -2,9 +2,11 @@
 //! controller's.
 
 use super::current::{Current, Motor};
+use super::excited::{Excited, way_counts};
 use super::injection::{HEARTBEAT_TICKS, Injection, MISSED_EVERY, second};
 use super::inputs::is_bad;
 use super::scenario::Scenario;
+use super::swings::Swings;
 use super::truth::{setpoint_turns, shown_errors_rad};
 use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
@@ -14,7 +16,6 @@ use core::ops::Range;
 use firmware::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
-use std::collections::VecDeque;
 
 /// Bridged frames that are told.
 const OFTEN: u64 = 12;
@@ -57,6 +58,11 @@ const RESISTOR_OFF_V: f64 = 52.0;
 /// Ticks of a servo that is on, bridges waking up, in which the resistor has been tested three times; and of one test.
 const TESTED_TICKS: u64 = 123;
 const TEST_TICKS: u64 = 41;
+/// Ticks of rest under the servo from one test of the resistor to the next: for certain, with three tries, and at least.
+const RESTED_TICKS: [u64; 2] = [40_300, 39_900];
+/// Ticks of a servo that is on after which the leads have been tested, and those in which that is judged.
+const LEADS_TESTED_TICKS: u64 = 62;
+const LEADS_JUDGED: Range<u64> = 42..64;
 /// A swing of a bridge's voltage that is one for certain, and that may be one, V; reversals and the ticks in which they come.
 const SWING_V: [f64; 2] = [26.0, 15.0];
 /// The same of what the velocity gain asks for, which may be three times as high where a pivot carries more.
@@ -64,7 +70,6 @@ const ASKED_V: f64 = 6.0;
 const REVERSALS: [usize; 2] = [14, 4];
 /// And where the setpoint moves.
 const REVERSALS_IN_MOTION: usize = 28;
-const SWINGING_TICKS: u64 = 2_000;
 /// A setpoint that hardly moves, rad/s.
 const SLOW_RAD_S: f64 = 1.05;
 
@@ -105,6 +110,16 @@ pub enum Effect {
     CurrentUnexplained,
     /// See above.
     CurrentMaybeUnexplained,
+    /// A current's reading stays the same, though that goes far.
+    CurrentStays,
+    /// A lead was lost when the servo went on, and leads have been tested since; and the tick in which that is judged.
+    LeadsTested,
+    /// See above.
+    LeadsMaybeTested,
+    /// The brake resistor was broken when the stage came to rest, and has been tested since; and it broke in that test.
+    ResistorTestedAtRest,
+    /// See above.
+    ResistorMaybeTestedAtRest,
     /// A bridge's voltage goes to and fro, over and over; and something like it.
     Oscillates,
     /// See above.
@@ -133,6 +148,14 @@ pub enum Effect {
     Hot,
     /// The same, but for what a third of the samples tells.
     NearlyHot,
+    /// A pivot has gone further than an excitation may take it, for certain and perhaps.
+    ExcitedTooFar,
+    /// See above.
+    NearlyExcitedTooFar,
+    /// The same for its rate.
+    ExcitedTooFast,
+    /// See above.
+    NearlyExcitedTooFast,
     /// Nothing has been heard for as long as the host has promised.
     Silence,
 }
@@ -164,6 +187,7 @@ pub struct Effects<'a> {
     broke_at: Option<f64>,
     position: Position,
     last: [u32; AXES],
+    excited: Excited,
     same: [u64; AXES],
     fast: [u64; AXES],
     at_full: [u64; AXES],
@@ -176,6 +200,8 @@ pub struct Effects<'a> {
     heat: [f64; AXES],
     /// Ticks in a row of driving, of a low and of a high supply, of bad frames; and those with the brake resistor on.
     driven: u64,
+    /// Those in which the setpoint has rested, too.
+    rested: u64,
     low: [u64; 2],
     high: [u64; 2],
     bad: [u64; AXES],
@@ -198,6 +224,7 @@ impl<'a> Effects<'a> {
             broke_at: None,
             position: [0; 3],
             last: [0; AXES],
+            excited: Excited::NONE,
             same: [0; AXES],
             fast: [0; AXES],
             at_full: [0; AXES],
@@ -206,6 +233,7 @@ impl<'a> Effects<'a> {
             pause: [0; AXES],
             heat: [0.0; AXES],
             driven: 0,
+            rested: 0,
             low: [0; 2],
             high: [0; 2],
             bad: [0; AXES],
@@ -230,6 +258,8 @@ impl<'a> Effects<'a> {
         let part = 1.0 - (-1.0 / (rate_hz * supervision.motor_heating_s)).exp();
         let goes_on = |so_far: u64, holds: bool| if holds { so_far + 1 } else { 0 };
         self.driven = goes_on(self.driven, now.is_driven);
+        let rests = now.is_driven && now.rates_rad_s == [0.0; AXES];
+        self.rested = goes_on(self.rested, rests);
         let supply_v = f64::from(now.supply_counts) * SUPPLY_V_PER_COUNT;
         for (i, near_v) in [-NEAR_V, NEAR_V].into_iter().enumerate() {
             let is_low = now.is_driven && supply_v < supervision.supply_min_v + near_v;
@@ -260,8 +290,8 @@ impl<'a> Effects<'a> {
                 f64::from(now.duty[i]) / f64::from(self.parameters.power.pwm_counts) * supply_v;
             let counts = now.shown[i].position();
             let half = COUNTS_PER_TURN / 2;
-            let step = (counts.wrapping_sub(self.last[i]).wrapping_add(half) % COUNTS_PER_TURN)
-                .abs_diff(half);
+            let step = way_counts(counts, self.last[i]);
+            self.excited.look(i, counts);
             let moved = counts.wrapping_sub(self.last[i]) % COUNTS_PER_TURN;
             self.last[i] = counts;
             // What the velocity gain makes of the encoder's rate is asked for whether the bridge can give it or not.
@@ -304,7 +334,8 @@ impl<'a> Effects<'a> {
                     rate_rad_s
                 },
                 current_a,
-                is_driven: now.is_driven,
+                // While the leads are tested nothing else is said of the currents.
+                is_driven: now.is_driven && self.driven > LEADS_TESTED_TICKS,
                 is_limited: [self.at_end[i] > 0, !pauses],
             };
             self.currents[i].look(motor, &self.parameters.drives[i], self.parameters);
@@ -342,6 +373,15 @@ impl<'a> Effects<'a> {
             Effect::CurrentMaybeUnexplained => {
                 self.currents.iter().any(Current::may_be_unexplained)
             }
+            Effect::CurrentStays => self.currents.iter().any(Current::stays),
+            Effect::LeadsTested => {
+                self.driven >= LEADS_TESTED_TICKS && tick + 1 - self.driven >= scenario.at
+            }
+            Effect::LeadsMaybeTested => LEADS_JUDGED.contains(&self.driven),
+            Effect::ResistorTestedAtRest => {
+                self.rested >= RESTED_TICKS[0] && tick + 1 - self.rested >= scenario.at
+            }
+            Effect::ResistorMaybeTestedAtRest => self.rested >= RESTED_TICKS[1],
             Effect::OftenBad => self.all_bad[scenario.axis] >= OFTEN,
             Effect::BadInARow => self.bad[scenario.axis] > bridged,
             // Frames that the CRC does not find belong to the row too.
@@ -394,9 +434,10 @@ impl<'a> Effects<'a> {
                 self.same[i] >= SAME_TICKS || (is_moving && self.same[i] >= bridged)
             }),
             Effect::Overspeed | Effect::BrieflyOverspeed if self.driven == 0 => false,
-            // One that was too fast before it was driven is looked at from then on.
+            // One that was too fast before it was driven is looked at once the leads have been tested.
             Effect::Overspeed => {
-                (self.fast.iter()).any(|&ticks| ticks.min(self.driven) >= LOOK_TICKS)
+                let looked_at = self.driven.saturating_sub(LEADS_TESTED_TICKS);
+                (self.fast.iter()).any(|&ticks| ticks.min(looked_at) >= LOOK_TICKS)
             }
             Effect::BrieflyOverspeed => self.fast.iter().any(|&ticks| ticks > 0),
             // A motor that asks for hardly more than its current's limit is limited in some ticks only, until its integral asks for more.
@@ -406,6 +447,10 @@ impl<'a> Effects<'a> {
             Effect::NearlyAtEnd => self.nearly.iter().any(|&ticks| ticks > longest),
             Effect::Hot => self.heat.iter().any(|&heat| heat > bearable),
             Effect::NearlyHot => self.heat.iter().any(|&heat| heat > NEARLY * bearable),
+            Effect::ExcitedTooFar => self.excited.is_too_far(self.parameters, false),
+            Effect::NearlyExcitedTooFar => self.excited.is_too_far(self.parameters, true),
+            Effect::ExcitedTooFast => self.excited.is_too_fast(self.parameters, false),
+            Effect::NearlyExcitedTooFast => self.excited.is_too_fast(self.parameters, true),
             Effect::Silence => tick > now.heard + HEARTBEAT_TICKS,
         }
     }
@@ -429,46 +474,5 @@ impl<'a> Effects<'a> {
         let bridged = u64::from(self.parameters.supervision.bridged_frames);
         let tick = scenario.at + u64::from(ticks) + 1 + bridged;
         Some((tick, second(scenario.axis)))
-    }
-}
-
-/// Reversals of a voltage.
-#[derive(Clone, Debug)]
-struct Swings {
-    now: u64,
-    extreme: f64,
-    rising: bool,
-    /// The ticks of the last ones.
-    reversals: VecDeque<u64>,
-}
-
-impl Swings {
-    const NONE: Self = Self {
-        now: 0,
-        extreme: 0.0,
-        rising: false,
-        reversals: VecDeque::new(),
-    };
-
-    fn look(&mut self, volts: f64, swing_v: f64, counts: bool) {
-        self.now += 1;
-        if !counts {
-            self.extreme = volts;
-            return;
-        }
-        let beyond = if self.rising {
-            volts - self.extreme
-        } else {
-            self.extreme - volts
-        };
-        if beyond > 0.0 {
-            self.extreme = volts;
-        } else if beyond < -swing_v {
-            self.rising = !self.rising;
-            self.extreme = volts;
-            self.reversals.push_back(self.now);
-        }
-        let now = self.now;
-        self.reversals.retain(|at| at + SWINGING_TICKS >= now);
     }
 }

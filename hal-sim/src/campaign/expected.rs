@@ -16,6 +16,8 @@ pub struct Cause {
     pub within_ticks: Option<u64>,
     /// Ticks by which it may be latched before, since the judge computes in other numbers.
     pub early_ticks: u64,
+    /// Ticks after which it is no reason any more, of what is looked at once.
+    pub late_ticks: u64,
 }
 
 /// What the controller has to do.
@@ -38,6 +40,7 @@ const fn cause(effect: Effect, kind: Kind, within_ticks: u64) -> Cause {
         kind: Some(kind),
         within_ticks: Some(within_ticks),
         early_ticks: 0,
+        late_ticks: u64::MAX,
     }
 }
 
@@ -47,6 +50,7 @@ const fn event(effect: Effect) -> Cause {
         kind: None,
         within_ticks: Some(COMMAND_SIDE_TICKS),
         early_ticks: 0,
+        late_ticks: u64::MAX,
     }
 }
 
@@ -56,6 +60,7 @@ const FOLLOWING: Cause = Cause {
     kind: Some(Kind::FollowingError),
     within_ticks: Some(1),
     early_ticks: 1,
+    late_ticks: u64::MAX,
 };
 /// One that hardly grows is nearly as large as its limit for some ticks.
 const NEARLY_FOLLOWING: Cause = Cause {
@@ -69,6 +74,7 @@ const STILL: Cause = Cause {
     kind: Some(Kind::EncoderFrozen),
     within_ticks: None,
     early_ticks: 0,
+    late_ticks: u64::MAX,
 };
 const OVERSPEED: Cause = cause(Effect::Overspeed, Kind::Overspeed, 0);
 const BRIEFLY_OVERSPEED: Cause = Cause {
@@ -116,6 +122,25 @@ const MAYBE_CURRENT: Cause = Cause {
     within_ticks: None,
     ..CURRENT
 };
+/// A reading that stays the same though the current does not; the judge's model of the current has the measured rate, the controller's what it
+/// has learnt.
+const STAYS: Cause = Cause {
+    early_ticks: 16,
+    ..cause(Effect::CurrentStays, Kind::CurrentUnexplained, 40)
+};
+/// A lead that was lost when the servo went on.
+const LEADS: Cause = Cause {
+    // A lead is missed by the first of two measurements, a direction by one of them.
+    early_ticks: 16,
+    ..cause(Effect::LeadsTested, Kind::CurrentUnexplained, 2)
+};
+/// Lost while it was tested, or a current that is told wrong by more than half.
+const MAYBE_LEADS: Cause = Cause {
+    effect: Effect::LeadsMaybeTested,
+    within_ticks: None,
+    late_ticks: 24,
+    ..LEADS
+};
 /// What a motion that goes wrong may be found by.
 const MOTION: &[Cause] = &[
     FOLLOWING,
@@ -134,6 +159,34 @@ const MOTION: &[Cause] = &[
     // What drives a ring from outside may give back more than the brake resistor takes.
     MAYBE_RISES,
 ];
+/// And what a current sensor is found by that is wrong: what the current's limit makes of it is a motion that goes wrong.
+const CURRENT_SENSOR: &[Cause] = &{
+    const OWN: [Cause; 2] = [STAYS, MAYBE_LEADS];
+    let mut causes = [STAYS; MOTION.len() + OWN.len()];
+    let (motion, own) = causes.split_at_mut(MOTION.len());
+    motion.copy_from_slice(MOTION);
+    own.copy_from_slice(&OWN);
+    causes
+};
+/// A pivot that an excitation, or whoever pushes meanwhile, takes too far or too fast.
+const EXCITED: &[Cause] = &{
+    const TOO_FAR: Cause = cause(Effect::ExcitedTooFar, Kind::ExcitationWay, 1);
+    const TOO_FAST: Cause = cause(Effect::ExcitedTooFast, Kind::Overspeed, 1);
+    [
+        TOO_FAR,
+        Cause {
+            effect: Effect::NearlyExcitedTooFar,
+            within_ticks: None,
+            ..TOO_FAR
+        },
+        TOO_FAST,
+        Cause {
+            effect: Effect::NearlyExcitedTooFast,
+            within_ticks: None,
+            ..TOO_FAST
+        },
+    ]
+};
 const SUPPLY_LOW: Cause = cause(Effect::LowSupply, Kind::SupplyLow, 1);
 /// Near the threshold noise decides.
 const NEARLY_SUPPLY_LOW: Cause = Cause {
@@ -168,6 +221,13 @@ const MAYBE_RESISTOR_DEAD: Cause = Cause {
     effect: Effect::ResistorMaybeTested,
     within_ticks: None,
     ..RESISTOR_DEAD
+};
+const RESISTOR_DEAD_AT_REST: Cause =
+    cause(Effect::ResistorTestedAtRest, Kind::BrakeResistorDead, 1);
+const MAYBE_RESISTOR_DEAD_AT_REST: Cause = Cause {
+    effect: Effect::ResistorMaybeTestedAtRest,
+    within_ticks: None,
+    ..RESISTOR_DEAD_AT_REST
 };
 const EMERGENCY_STOP: Cause = cause(Effect::AtOnce, Kind::EmergencyStop, 0);
 const SILENT: Cause = cause(Effect::BadFrames, Kind::EncoderSilent, 0);
@@ -209,6 +269,7 @@ const LED_ASTRAY: Cause = Cause {
     kind: Some(Kind::CurrentUnexplained),
     within_ticks: None,
     early_ticks: 0,
+    late_ticks: u64::MAX,
 };
 
 impl Injection {
@@ -243,7 +304,14 @@ impl Injection {
                 }
             }
             Self::FewMissedTicks(_) => &[FOLLOWING, NEARLY_FOLLOWING],
-            Self::DirectionStuck => &[FOLLOWING, NEARLY_FOLLOWING, CURRENT, MAYBE_CURRENT],
+            Self::DirectionStuck => &[
+                FOLLOWING,
+                NEARLY_FOLLOWING,
+                CURRENT,
+                MAYBE_CURRENT,
+                LEADS,
+                MAYBE_LEADS,
+            ],
             Self::DriveLost => &[
                 FOLLOWING,
                 NEARLY_FOLLOWING,
@@ -252,6 +320,8 @@ impl Injection {
                 NEARLY_STALLED,
                 CURRENT,
                 MAYBE_CURRENT,
+                LEADS,
+                MAYBE_LEADS,
             ],
             Self::Jam => &[FOLLOWING, NEARLY_FOLLOWING, STILL, STALLED, NEARLY_STALLED],
             // A machine that is hit rings.
@@ -282,13 +352,20 @@ impl Injection {
             Self::Bursts(..) => &const { [event(Effect::OftenBad)] },
             Self::SupplyHigh(_) => &[SUPPLY_HIGH, NEARLY_SUPPLY_HIGH],
             Self::ResistorHot(_) => &[RESISTOR_HOT],
-            Self::ResistorOpen | Self::ResistorStuckOn => {
-                &[RESISTOR_DEAD, MAYBE_RESISTOR_DEAD, RISES, MAYBE_RISES]
-            }
+            Self::ResistorOpen | Self::ResistorStuckOn => &[
+                RESISTOR_DEAD,
+                MAYBE_RESISTOR_DEAD,
+                RESISTOR_DEAD_AT_REST,
+                MAYBE_RESISTOR_DEAD_AT_REST,
+                RISES,
+                MAYBE_RISES,
+            ],
             // It shows no drop when the resistor is tested. In motion duties are wrong by what the bus sags and rises.
             Self::SupplyStuck => &[
                 RESISTOR_DEAD,
                 MAYBE_RESISTOR_DEAD,
+                RESISTOR_DEAD_AT_REST,
+                MAYBE_RESISTOR_DEAD_AT_REST,
                 FOLLOWING,
                 NEARLY_FOLLOWING,
                 STALLED,
@@ -323,11 +400,11 @@ impl Injection {
                     MAYBE_CURRENT,
                 ],
             },
+            Self::CurrentBias(_) | Self::CurrentStuck => CURRENT_SENSOR,
+            Self::PushedExcited(_) => EXCITED,
             Self::Drift(_)
             | Self::Scale(_)
-            | Self::CurrentBias(_)
             | Self::SupplyBias(_)
-            | Self::CurrentStuck
             | Self::Fading(_)
             | Self::Friction(_)
             | Self::GuideJam

@@ -104,6 +104,8 @@ pub enum Injection {
     SupplyStuck,
     /// What is kept was written by a newer firmware.
     NewerSettings,
+    /// With the servo off and a motor excited, a ring is pushed with this torque, N m, until the motors brake.
+    PushedExcited(f64),
 }
 
 /// What breaks in the same tick as an encoder falls silent.
@@ -120,7 +122,7 @@ pub enum Other {
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 48] = [
+pub const NAMES: [&str; 49] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -169,6 +171,7 @@ pub const NAMES: [&str; 48] = [
     "current sensor stuck",
     "supply sensor stuck",
     "settings newer",
+    "pushed while excited",
 ];
 
 /// One of so many ticks does not come.
@@ -250,6 +253,7 @@ impl Injection {
             Self::CurrentStuck => 45,
             Self::SupplyStuck => 46,
             Self::NewerSettings => 47,
+            Self::PushedExcited(_) => 48,
         }
     }
 
@@ -287,7 +291,7 @@ impl Injection {
     /// Whether somebody pulls who lets go of a stage that is braked or coasts.
     #[must_use]
     pub const fn lets_go(&self) -> bool {
-        matches!(self, Self::HotMotor(_))
+        matches!(self, Self::HotMotor(_) | Self::PushedExcited(_))
     }
 
     /// Whether it is there from the start.

@@ -8,15 +8,15 @@
 //! masses, motors and the time to find it allow (`bound`). What it does not find is compared with the sound run: where its inputs
 //! differ by less than their noise, nobody could have found it (`inputs`).
 //!
-//! Not here, since nothing that reaches the controller brings them about: numbers that are none (frames and ADC counts are whole
+//! Not here, since nothing that reaches the controller from outside brings them about: numbers that are none (frames and ADC counts are whole
 //! numbers, and a parameter that makes one is out of its range or does not go with the others) and setpoints out of reach, out of the
 //! disk, the guides or too close (the planner gives none). They have tests of their own, past the command side; the crystal and the
-//! image's checksum have them on the emulated chip.
+//! image's checksum have them on the emulated chip, and so do bits that flip in its RAM (`cargo chip-upsets`).
 //!
 //! | file | idea |
 //! |---|---|
 //! | `injection`, `draw`, `apply`, `settings` | what breaks; how much; how the hardware does it |
-//! | `expected`, `effect`, `current` | what the controller has to say about it, and when that has passed its threshold |
+//! | `expected`, `effect`, `current`, `swings`, `excited` | what the controller has to say about it, and when that has passed its threshold |
 //! | `scenario`, `motion` | from a seed to a run; what the stage is told |
 //! | `run`, `watch` | one run, and who looks on |
 //! | `outcome` | what came of a run |
@@ -32,6 +32,7 @@ mod bound;
 mod current;
 mod draw;
 mod effect;
+mod excited;
 mod expected;
 mod injection;
 mod inputs;
@@ -43,6 +44,7 @@ mod rows;
 mod run;
 mod scenario;
 mod settings;
+mod swings;
 mod table;
 mod totals;
 mod truth;

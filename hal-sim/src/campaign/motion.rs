@@ -91,6 +91,23 @@ impl Motion {
     }
 }
 
+/// What is told instead where a motor is excited with the servo off, and from when on and how long it is.
+pub(super) const EXCITED_AT: u64 = 60;
+pub(super) const EXCITED_TICKS: u32 = 4_000;
+
+impl Motion {
+    /// A motor that is excited, by sines of 100 Hz and more.
+    pub fn excitation(pivot: usize) -> Self {
+        let excited_ms = EXCITED_TICKS / 20;
+        let line = format!("EXC SINES {} 1.5 {excited_ms} 20 400 8", pivot + 1);
+        Self {
+            lines: vec![(REFERENCE, "CCL 1 ADVANCED".to_owned()), (EXCITED_AT, line)],
+            pressed: None,
+            watched_from: 0,
+        }
+    }
+}
+
 /// Somewhere in the disk, mm.
 pub(super) fn place_mm(random: &mut Random) -> [f64; 2] {
     loop {

@@ -5,7 +5,9 @@ use core::f64::consts::TAU;
 use firmware::parameters::Parameters;
 
 use super::injection::{HEARTBEAT_MS, Injection};
-use super::motion::{FIRST_MOTION, MOTION_TICKS, Motion, REFERENCE, place_mm};
+use super::motion::{
+    EXCITED_AT, EXCITED_TICKS, FIRST_MOTION, MOTION_TICKS, Motion, REFERENCE, place_mm,
+};
 use crate::machine::devices::{StageParameters, WiringParameters};
 use crate::machine::plant::{AXES, Imperfections};
 use crate::machine::unknown;
@@ -15,6 +17,8 @@ use crate::rig::{Told, with_gains_fitted, with_motion_fitted, with_wiring_told};
 /// The tick from which on the stage is held, after `FRF`, and the ticks in which something may break meanwhile.
 const HELD: u64 = 16;
 const REFERENCING: u32 = 12;
+/// Ticks after which a stage that rests under its servo has tested its brake resistor: 2.3 s.
+const RESTED: u64 = 46_000;
 
 /// A run before it is run.
 #[derive(Clone, Debug)]
@@ -63,6 +67,9 @@ impl Scenario {
         }
         injection.set_up(&mut parameters.supervision);
         let axis = random.below(AXES as u32) as usize;
+        if matches!(injection, Injection::PushedExcited(_)) {
+            motion = Motion::excitation(axis);
+        }
         let at = at(&injection, &motion, &mut random);
         Self {
             seed,
@@ -75,6 +82,19 @@ impl Scenario {
             injection,
             axis,
             at,
+        }
+    }
+
+    /// Ticks after the fault in which it is waited for: in a fourth of the runs long enough for a test of the brake resistor at rest.
+    #[must_use]
+    pub const fn patience(&self) -> u64 {
+        match self.injection {
+            Injection::ResistorOpen | Injection::ResistorStuckOn | Injection::SupplyStuck
+                if self.seed.is_multiple_of(4) =>
+            {
+                RESTED
+            }
+            _ => self.injection.patience(),
         }
     }
 
@@ -101,6 +121,7 @@ fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     match injection {
         Injection::DamagedSettings | Injection::NewerSettings => 0,
         Injection::ExchangedLines => 1,
+        Injection::PushedExcited(_) => EXCITED_AT + u64::from(random.below(EXCITED_TICKS)),
         // Found before anything drives; in motion mostly not.
         Injection::ResistorOpen | Injection::ResistorStuckOn if random.below(2) == 0 => 1,
         // At rest: in motion what needs a place in the queue waits for one.

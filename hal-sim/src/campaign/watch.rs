@@ -182,7 +182,7 @@ impl<'a> Watch<'a> {
             return true;
         }
         if !self.is_left_alone() {
-            return tick >= self.scenario.at + self.scenario.injection.patience();
+            return tick >= self.scenario.at + self.scenario.patience();
         }
         let since = (self.outcome.fault).map_or(self.scenario.at, |fault| fault.tick);
         let is_started = self
@@ -205,7 +205,10 @@ impl<'a> Watch<'a> {
             .filter_map(|(cause, passed)| Some((cause, (*passed)?)))
             .collect();
         outcome.is_founded |= of_it.iter().any(|(cause, passed)| {
-            (outcome.fault).is_none_or(|fault| *passed <= fault.tick + cause.early_ticks)
+            (outcome.fault).is_none_or(|fault| {
+                *passed <= fault.tick + cause.early_ticks
+                    && fault.tick <= passed.saturating_add(cause.late_ticks)
+            })
         });
         // What need not be latched has no instant from which to count.
         let counts =

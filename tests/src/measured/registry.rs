@@ -312,6 +312,21 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "upsets",
+        title: "Bits that flip in the chip's RAM",
+        group: Group::Faults,
+        about: "One bit of a word of a part of the memory, in a random tick of standing or moving, on the emulated chip. Nothing: the pins \
+                have done what they do without it, for 75 ms. Harmless: they have not, but the platform was within a micrometre of \
+                where it should be. Not told: it was further off, or the command side does not answer, and there was neither a fault nor a \
+                restart. The loop's code and its tables are not among the parts: they are compared with their copy in flash; nor is the command side's memory. \
+                `cargo chip-upsets --only PART:SEED` runs one of them again.",
+        command: "cargo chip-upsets --runs 60",
+        short: Some("cargo chip-upsets --runs 12"),
+        kind: Kind::Compiled,
+        seconds: 220,
+        without: &[],
+    },
+    Section {
         name: "power-cuts",
         title: "Power cuts while settings are written",
         group: Group::Faults,

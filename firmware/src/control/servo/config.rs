@@ -65,18 +65,18 @@ pub struct PivotServoConfig {
     /// Presliding lengths a tick, for a rate of 1 rad/s.
     pub(super) presliding_per_rate: f32,
     /// Current over the dead time's knee, for a volt at rest.
-    pub(super) knee_currents_per_volt: f32,
+    pub(in crate::control) knee_currents_per_volt: f32,
     /// Current over the knee of an ADC count; share of what the current is off by that the motor constant is corrected by, in volts.
     pub(in crate::control) knee_currents_per_count: f32,
     pub(super) motor_constant_step: f32,
     pub(super) motor_constant_limit: f32,
     /// Share of the way to its final value that the current goes in a tick.
-    pub(super) current_step: f32,
+    pub(in crate::control) current_step: f32,
     pub(super) current_limit: CurrentLimitConfig,
     /// What the dead time takes of a pulse, PWM counts.
-    pub(super) dead_time_counts: f32,
+    pub(in crate::control) dead_time_counts: f32,
     /// Largest duty, PWM counts.
-    pub(super) max_counts: f32,
+    pub(in crate::control) max_counts: f32,
     /// Change of the duty that must change a reading, PWM counts.
     pub(in crate::control) frozen_duty: u16,
     /// Swing of the feedback that is an oscillation, V.

@@ -13,7 +13,7 @@ pub(super) fn dead_time_share(current: f32) -> f32 {
 /// current's size and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage). A pulse
 /// that comes out no longer than `dead_counts` is one that loses its share of itself.
 #[inline]
-pub(super) fn compensate_dead_time(wanted: f32, share: f32, dead_counts: f32) -> f32 {
+pub(in crate::control) fn compensate_dead_time(wanted: f32, share: f32, dead_counts: f32) -> f32 {
     let pulse = wanted + dead_counts * share;
     let (size, share) = if wanted < 0.0 {
         (-pulse, -share)

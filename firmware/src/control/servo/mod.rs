@@ -45,6 +45,7 @@ mod presliding;
 mod ripple;
 
 pub use config::{PivotServoConfig, ServoConfig};
+pub(in crate::control) use dead_time::compensate_dead_time;
 pub use drive_limits::{BorneLimits, ask_the_same, largest_limits};
 pub use filter::{FilterConfig, Filters};
 pub use gear_error::GearErrorConfig;

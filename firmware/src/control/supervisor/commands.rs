@@ -101,6 +101,7 @@ impl State {
                 let taken = self.motion.accept(plan, plans).is_ok();
                 if taken {
                     self.settling.start();
+                    self.put_off_brake_resistor_test();
                 }
                 taken
             }

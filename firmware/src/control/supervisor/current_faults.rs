@@ -11,6 +11,8 @@ use crate::number::sqrt_f32;
 /// Share of the current that its voltage should drive by which the measured one may be off: a winding's resistance may be a third off,
 /// and grows by a quarter when it is hot.
 const EXPLAINED_SHARE: f32 = 0.6;
+/// Share of what a current may be off by that it may have gone by the model while its reading has stayed the same to the bit.
+const STUCK_SHARE: f32 = 0.5;
 /// How long a current may be unexplained, ticks: 3 ms driven, nine of the windings' own times; 100 ms with the servo off, where a
 /// motor that is turned by hand drives none, and what flowed before has gone.
 const DRIVEN_TICKS: u32 = 60;
@@ -30,6 +32,9 @@ impl State {
         for (i, counts) in current_counts.iter().enumerate() {
             self.check_current(config, i, *counts);
         }
+        if self.mode == Mode::Holding {
+            self.test_brake_resistor_at_rest(&config.limits);
+        }
     }
 
     // One copy of the code: it lies in memory that is short.
@@ -37,7 +42,10 @@ impl State {
     fn check_current(&mut self, config: &Config, pivot: usize, counts: i16) {
         self.check_motor_heat(config, pivot, counts);
         if self.servo_on() {
-            self.check_driven_current(config, pivot, counts);
+            // The test of the leads drives what the servo's model does not know.
+            if !self.is_waking() {
+                self.check_driven_current(config, pivot, counts);
+            }
         } else if self.mode == Mode::Off && config.commissioned {
             self.check_idle_current(config, pivot, counts);
         }
@@ -85,9 +93,19 @@ impl State {
         };
         let knees_per_count = servo_config.knee_currents_per_count;
         let model = servo.current_knees();
-        let apart = f32::from(counts) * knees_per_count - model;
-        let unexplained = f32::from(config.limits.unexplained_current_counts);
-        let most = unexplained * knees_per_count + EXPLAINED_SHARE * model.abs();
+        let unexplained = f32::from(config.limits.unexplained_current_counts) * knees_per_count;
+        let mut apart = f32::from(counts) * knees_per_count - model;
+        let mut most = unexplained + EXPLAINED_SHARE * model.abs();
+        if counts == watch.current_counts {
+            // A reading that stays the same to the bit says nothing of the current: what counts is how far that has gone since then.
+            let stayed = watch.model_then - model;
+            if stayed.abs() > STUCK_SHARE * unexplained {
+                (apart, most) = (stayed, STUCK_SHARE * unexplained);
+            }
+        } else {
+            watch.current_counts = counts;
+            watch.model_then = model;
+        }
         // What is taken away at its limits the model does not know.
         let is_explained = apart.abs() < most || servo.is_saturated(servo_config);
         watch.unexplained_ticks = longer(watch.unexplained_ticks, is_explained);
@@ -99,7 +117,12 @@ impl State {
 
     /// Both in ADC counts.
     #[cold]
-    fn fault_unexplained_current(&mut self, pivot: usize, value: f32, limit: f32) {
+    pub(in crate::control) fn fault_unexplained_current(
+        &mut self,
+        pivot: usize,
+        value: f32,
+        limit: f32,
+    ) {
         let kind = FaultKind::CurrentUnexplained;
         self.raise_fault(kind, Some(pivot), value * AMPERE, limit * AMPERE);
     }

@@ -18,7 +18,9 @@ impl State {
     /// A fault: latched, and answered as the table has it.
     ///
     /// The first one stays latched until it is acknowledged; one that ends its controlled stop is kept beside it.
+    // One copy of the code: it lies in memory that is short.
     #[cold]
+    #[inline(never)]
     pub(in crate::control) fn raise_fault(
         &mut self,
         kind: FaultKind,
@@ -29,6 +31,7 @@ impl State {
         self.raise_fault_with(kind.reaction(), kind, pivot, [value, limit]);
     }
 
+    #[inline(never)]
     pub(super) fn raise_fault_with(
         &mut self,
         mut reaction: Reaction,
@@ -64,6 +67,8 @@ impl State {
         }
         self.excitation.end(ExcitationEnd::Fault);
         self.waking_ticks = 0;
+        self.lead_test.stop();
+        self.brake_resistor.test.stop();
         self.mode = mode;
         self.coasts = reaction == Reaction::Coast;
         self.settling.start();

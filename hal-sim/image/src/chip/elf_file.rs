@@ -2,6 +2,7 @@
 
 use object::{Object, ObjectSymbol};
 use std::env;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Names a built image `stage`, instead of the one in this build's target folder.
@@ -27,6 +28,16 @@ pub fn built(name: &str) -> Option<PathBuf> {
         .ancestors()
         .map(|folder| folder.join(IN_TARGET_FOLDER).join(name))
         .find(|path| path.is_file())
+}
+
+/// Where the first of an image's variables lies whose symbol has this in it.
+#[must_use]
+pub fn place(path: &Path, part: &str) -> Option<Range<u64>> {
+    let bytes = std::fs::read(path).ok()?;
+    let file = object::File::parse(&*bytes).ok()?;
+    let symbol = (file.symbols())
+        .find(|symbol| symbol.size() > 0 && symbol.name().is_ok_and(|name| name.contains(part)))?;
+    Some(symbol.address()..symbol.address() + symbol.size())
 }
 
 /// The value of one of an image's symbols.

@@ -26,6 +26,7 @@
 //! | `twin` | the same controller on the host |
 //! | `load`, `busy`, `circle` | the tick under all the load there is; all that a slow chip has to do at once; what streams follow |
 //! | `cost`, `follow`, `way`, `estimate` | what ticks take; their instructions; one tick's by where they are written; `llvm-mca` on it |
+//! | `upset` | bits of the RAM that flip, and what comes of it |
 //! | `gaps` | what the emulator does not model |
 //! | `elf_file` | where the images lie |
 //!
@@ -51,6 +52,7 @@ mod run;
 mod serve;
 mod timeline;
 mod twin;
+mod upset;
 mod uses;
 mod way;
 
@@ -69,5 +71,6 @@ pub use rigless::device::ResetCause;
 pub use run::{ChipError, ChipOutcome, run};
 pub use serve::{LineNotice, LineServer};
 pub use twin::{Agreed, Divergence, Twin};
+pub use upset::{Consequence, REGIONS, Upset, UpsetRun, upset, upsets};
 pub use uses::{Use, Used, UsedTick, uses};
 pub use way::follow;

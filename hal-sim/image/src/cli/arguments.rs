@@ -34,6 +34,8 @@ pub(super) enum Command {
     /// What ticks take in cycles of the real core and its flash, by what they are used for: a model of both over the instructions that
     /// ran on the emulated chip.
     ChipCycles(ChipCycles),
+    /// Flip single bits of the emulated chip's RAM while it works, and tell what the controller makes of them.
+    ChipUpsets(ChipUpsets),
     /// Prove of the chip's image that its control loop cannot panic and how deep its stack gets; print what it takes of flash and
     /// RAM. Exit code 1 if the proof fails.
     ImageCheck,
@@ -117,6 +119,20 @@ pub(super) struct ChipCycles {
     /// The limits.
     #[arg(long, value_name = "FILE", default_value = LIMITS)]
     pub(super) limits: PathBuf,
+}
+
+/// Bits that flip.
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipUpsets {
+    /// Runs, each with one bit.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u64).range(1..=1_000_000))]
+    pub(super) runs: u64,
+    /// Seed of the runs' seeds.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// One of the runs again, by the number of its part of the memory and its seed, as they are printed.
+    #[arg(long, value_name = "PART:SEED", conflicts_with_all = ["runs", "seed"])]
+    pub(super) only: Option<String>,
 }
 
 /// One tick on the emulated chip.

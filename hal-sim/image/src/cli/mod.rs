@@ -9,6 +9,7 @@ mod chip_load;
 mod chip_pins;
 mod chip_serve;
 mod chip_tick;
+mod chip_upsets;
 mod cost;
 mod error;
 mod exercise;
@@ -50,6 +51,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::ChipLoad(arguments) => chip_load::run(&arguments),
         Command::ChipCycles(arguments) => chip_cycles::run(&arguments),
         Command::ChipTick(arguments) => chip_tick::run(&arguments),
+        Command::ChipUpsets(arguments) => chip_upsets::run(&arguments),
         Command::ImageCheck => image_check::run(),
         Command::Seal => seal::run(),
     }
