@@ -78,14 +78,18 @@ impl Inputs {
         }
     }
 
-    /// How much more it differs from the sound run's than that does from another sound run, in which only the noise is another one: of
-    /// the channel in which it is most.
+    /// How much more it differs from the sound run's than that does from other sound runs: of the channel in which it is most.
     #[must_use]
-    pub fn differ(&self, sound: &Self, with_other_noise: &Self, scenario: &Scenario) -> f64 {
+    pub fn differ(&self, sound: &Self, others: &[&Self], scenario: &Scenario) -> f64 {
         let by_fault = self.apart(sound, scenario);
-        let by_noise = with_other_noise.apart(sound, scenario);
-        (by_fault.into_iter().zip(by_noise))
-            .map(|(fault, noise)| fault / noise.max(1.0))
+        let mut sound_ones = [1.0_f64; CHANNELS];
+        for other in others {
+            for (most, apart) in sound_ones.iter_mut().zip(other.apart(sound, scenario)) {
+                *most = most.max(apart);
+            }
+        }
+        (by_fault.into_iter().zip(sound_ones))
+            .map(|(fault, sound)| fault / sound)
             .fold(0.0, f64::max)
     }
 

@@ -6,7 +6,8 @@
 //!
 //! What the controller makes of it is held to two things: it says in time what has happened, and the stage comes to rest within what
 //! masses, motors and the time to find it allow (`bound`). What it does not find is compared with the sound run: where its inputs
-//! differ by less than their noise, nobody could have found it (`inputs`).
+//! differ by less than their noise (`inputs`), or by less than the sound machine's own do from one day to another (`another_day`), nobody
+//! could have found it.
 //!
 //! Not here, since nothing that reaches the controller from outside brings them about: numbers that are none (frames and ADC counts are whole
 //! numbers, and a parameter that makes one is out of its range or does not go with the others) and setpoints out of reach, out of the
@@ -22,11 +23,12 @@
 //! | `outcome` | what came of a run |
 //! | `truth`, `rest` | what the machine really did |
 //! | `bound` | how far it may go on, by physics |
-//! | `inputs` | whether the controller could have known |
+//! | `inputs`, `another_day` | whether the controller could have known |
 //! | `verdict` | whether the controller did what it has to |
 //! | `totals` | what the runs of each fault amount to |
 //! | `table`, `remedy`, `rows` | what is printed, and written |
 
+mod another_day;
 mod apply;
 mod bound;
 mod current;
@@ -55,7 +57,7 @@ pub use bound::MARGIN;
 pub use effect::Effect;
 pub use expected::{Cause, Expected};
 pub use injection::{Injection, NAMES, Other};
-pub use outcome::{End, Outcome};
+pub use outcome::{Differs, End, Outcome};
 pub use rest::ToRest;
 pub use rows::csv;
 pub use run::run;
@@ -68,6 +70,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use crate::random::Random;
+use another_day::on_another_day;
+use inputs::Inputs;
 
 /// What a campaign is to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,10 +125,19 @@ pub fn replay(seed: u64) -> [Outcome; 2] {
     if pair[0].detected().is_none() {
         let mut with_other_noise = pair[1].scenario.clone();
         with_other_noise.stage.seed = !with_other_noise.seed;
-        let other = run(with_other_noise, true);
+        let mut then = with_other_noise.clone();
+        then.stage = on_another_day(&then.stage, seed);
+        let [noise, then] = [with_other_noise, then].map(|scenario| run(scenario, true).inputs);
         let [broken, sound] = &mut pair;
-        broken.differs =
-            Some((broken.inputs).differ(&sound.inputs, &other.inputs, &broken.scenario));
+        let than = |others: &[&Inputs]| {
+            broken
+                .inputs
+                .differ(&sound.inputs, others, &broken.scenario)
+        };
+        broken.differs = Some(Differs {
+            than_noise: than(&[&noise]),
+            than_another_day: than(&[&noise, &then]),
+        });
     }
     for outcome in &mut pair {
         outcome.inputs.clear();

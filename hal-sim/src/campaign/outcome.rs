@@ -38,12 +38,21 @@ pub struct Outcome {
     pub bound: Option<ToRest>,
     /// What the tick has read from the injection on.
     pub inputs: Inputs,
-    /// How much more that differs from the sound run than other noise makes it differ; told where nothing was found.
-    pub differs: Option<f64>,
+    /// How much more that differs from the sound run than it might have without the fault; told where nothing was found.
+    pub differs: Option<Differs>,
     /// How it ended.
     pub end: End,
     /// What the plant says of its own equations, which end where the platform is torn out of its guides or a gear's tooth breaks.
     pub is_torn: bool,
+}
+
+/// By how many times more what the controller reads differs from the sound run, in the channel in which it is most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Differs {
+    /// Than other noise makes it differ.
+    pub than_noise: f64,
+    /// Than that or what the same machine is on another day.
+    pub than_another_day: f64,
 }
 
 /// State at the end of a run.

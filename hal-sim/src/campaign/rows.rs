@@ -7,7 +7,7 @@ use ::csv::Writer;
 use super::injection::NAMES;
 use super::outcome::Outcome;
 
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 24] = [
     "seed",
     "fault",
     "pivot",
@@ -28,7 +28,8 @@ const COLUMNS: [&str; 23] = [
     "depth_bound_mm",
     "blow_j",
     "blow_bound_j",
-    "inputs_differ",
+    "inputs_differ_than_noise",
+    "inputs_differ_than_another_day",
     "end",
     "problem",
 ];
@@ -46,10 +47,11 @@ pub fn csv(outcomes: &[Outcome]) -> io::Result<Vec<u8>> {
     writer.into_inner().map_err(|error| error.into_error())
 }
 
-fn row(outcome: &Outcome) -> [String; 23] {
+fn row(outcome: &Outcome) -> [String; 24] {
     let scenario = &outcome.scenario;
     let fault = outcome.fault.as_ref();
     let told = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
+    let times = |value: Option<f64>| value.map_or_else(String::new, |it| format!("{it:.2}"));
     let mm = |value: f64| format!("{value:.4}");
     let (was, most) = (outcome.reaction, outcome.bound.unwrap_or_default());
     let name = match outcome.is_control {
@@ -81,7 +83,8 @@ fn row(outcome: &Outcome) -> [String; 23] {
         mm(most.depth_mm),
         mm(was.blow_j),
         mm(most.blow_j),
-        (outcome.differs).map_or_else(String::new, |times| format!("{times:.2}")),
+        times(outcome.differs.map(|it| it.than_noise)),
+        times(outcome.differs.map(|it| it.than_another_day)),
         outcome.end.text().to_owned(),
         (outcome.problem()).map_or_else(String::new, |problem| problem.to_string()),
     ]

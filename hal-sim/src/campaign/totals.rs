@@ -16,9 +16,11 @@ pub struct Total {
     /// Those that were detected.
     pub detected: usize,
     /// Those of the others in which the controller's inputs differ from the sound run's by less than noise.
-    pub hidden: usize,
+    pub within_noise: usize,
+    /// Those in which they differ by more, but by less than the sound machine's on another day.
+    pub within_days: usize,
     /// Those in which they differ by more, and nothing has passed a threshold.
-    pub harmless: usize,
+    pub beyond: usize,
     /// Those that are not as they should be.
     pub wrong: usize,
     /// From the effect to its detection.
@@ -97,14 +99,20 @@ fn total(fault: &'static str, outcomes: &[&Outcome]) -> Total {
             .map(|outcome| outcome.reaction.blow_j)
             .filter(|&joules| joules > 0.0)
     };
-    let is_hidden = |outcome: &&&Outcome| outcome.differs.is_some_and(|times| times < 1.0);
+    let is_in_noise =
+        |outcome: &&&Outcome| (outcome.differs).is_some_and(|times| times.than_noise < 1.0);
+    let is_in_days =
+        |outcome: &&&Outcome| (outcome.differs).is_some_and(|times| times.than_another_day < 1.0);
     Total {
         fault,
         runs: outcomes.len(),
         detected: detected().count(),
-        hidden: undetected().filter(is_hidden).count(),
-        harmless: (undetected().filter(|outcome| outcome.effect.is_none()))
-            .filter(|outcome| !is_hidden(outcome))
+        within_noise: undetected().filter(is_in_noise).count(),
+        within_days: (undetected().filter(is_in_days))
+            .filter(|outcome| !is_in_noise(outcome))
+            .count(),
+        beyond: (undetected().filter(|outcome| outcome.effect.is_none()))
+            .filter(|outcome| !is_in_days(outcome))
             .count(),
         wrong: all().filter(|outcome| outcome.problem().is_some()).count(),
         latency_ticks: Spread::of(

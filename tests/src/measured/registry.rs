@@ -292,7 +292,7 @@ pub const SECTIONS: &[Section] = &[
         name: "campaign",
         title: "The campaign of faults",
         group: Group::Faults,
-        about: "A fault at a random tick of a random motion (moves, jogs, waves, streams, in frames, while it is being referenced, with the servo \
+        about: "A fault at a random tick of a random motion (moves, jogs, waves, streams, in frames, while it is being referenced, while a motor is excited, with the servo \
                 off and on, in a stop, after a fault that was acknowledged), on machines drawn as a workshop builds them, with every imperfection, whose \
                 controllers were told their numbers, gains and notches for their resonances and a motion that their motors bear; and as many runs without. Wrong is: a fault \
                 that is not latched in time, before what it names has passed its threshold in the machine itself, or under another name \
@@ -302,8 +302,9 @@ pub const SECTIONS: &[Section] = &[
                 the effect passes its threshold, as the simulator sees it. Way, turn and blows are those from when the reaction had to \
                 begin to rest; a blow is that of a carriage against its neighbour or the end of its guide. The second table is of runs \
                 in which nothing was detected: the controller's inputs differ from those of the sound run by less than other noise makes \
-                them differ, so that nobody could have known, or by more, without passing a threshold; and how far the platform was off \
-                its path by then. `tripivot faults --only SEED` runs one of the seeds again.",
+                them differ; or by less than those of the same machine on another day (as warm as it may be, a quarter more or less friction, \
+                another 2 % of supply, magnets 3 % off, sensors within what they are good for), so that nobody could have known; or by more, without passing a \
+                threshold; and how far the platform was off its path by then. `tripivot faults --only SEED` runs one of the seeds again.",
         // With findings, which are told, its exit code is 1.
         command: "cargo run --release -- faults --runs 10000 || test $? = 1",
         short: Some("cargo run --release -- faults --runs 200 || test $? = 1"),
