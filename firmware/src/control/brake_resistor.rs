@@ -1,5 +1,5 @@
 //! The brake resistor on the bus: it takes what the motors give back, as long as it bears that. One that is open is found by what the
-//! supply does while it should be on, and by its test while the bridges wake up
+//! supply does while it should be on, and by its test while the bridges wake up or the stage rests
 //! ([`brake_resistor_test`](super::brake_resistor_test)).
 //!
 //! The servo holds back nothing: what a motor gives back at a torque and a rate is fixed. Where the resistor is open the fault's reaction, shorted

@@ -12,6 +12,7 @@
 use core::f64::consts::TAU;
 
 use crate::machine::devices::StageParameters;
+use crate::machine::draw_sensors;
 use crate::machine::plant::{AXES, FrictionParameters};
 use crate::random::Random;
 
@@ -32,9 +33,6 @@ pub(super) fn on_another_day(stage: &StageParameters, seed: u64) -> StageParamet
     regrease(&mut plant.guide_friction);
     plant.supply_v *= random.between(0.98, 1.02);
     plant.ball_phase_rad = [(); AXES].map(|()| random.between(0.0, TAU));
-    let analog = &mut then.analog;
-    analog.current_offset_counts = [(); AXES].map(|()| 2.0 * random.normal());
-    analog.current_gain = [(); AXES].map(|()| 1.0 + 5e-3 * random.normal());
-    analog.supply_gain = 1.0 + 5e-3 * random.normal();
+    draw_sensors(&mut then.analog, &mut random);
     then
 }

@@ -5,11 +5,11 @@ use firmware::parameters::{Drive, Parameters};
 /// What the controller allows besides its threshold, as a share of the current that should flow, and for how many ticks.
 const SHARE: f64 = 0.6;
 const DRIVEN_TICKS: u64 = 60;
+const OFF_TICKS: u64 = 2_000;
 /// Share of its threshold that a current may have gone while its reading stays the same.
 const STUCK_SHARE: f64 = 0.5;
 /// Largest share by which it may learn that a motor constant is another one.
 const LEARNT: f64 = 0.5;
-const OFF_TICKS: u64 = 2_000;
 /// Shares of what is allowed from which on it is found for certain, and may be: the controller's model has the setpoint's rate.
 const CERTAIN: f64 = 1.3;
 const POSSIBLE: f64 = 0.7;

@@ -56,11 +56,8 @@ const fn event(effect: Effect) -> Cause {
 
 /// A pivot that is further off than it may be, whatever put it there.
 const FOLLOWING: Cause = Cause {
-    effect: Effect::FollowingError,
-    kind: Some(Kind::FollowingError),
-    within_ticks: Some(1),
     early_ticks: 1,
-    late_ticks: u64::MAX,
+    ..cause(Effect::FollowingError, Kind::FollowingError, 1)
 };
 /// One that hardly grows is nearly as large as its limit for some ticks.
 const NEARLY_FOLLOWING: Cause = Cause {
@@ -70,11 +67,8 @@ const NEARLY_FOLLOWING: Cause = Cause {
 };
 /// An encoder that repeats its reading, which one of a pivot that is held fast does too: nothing tells the two apart.
 const STILL: Cause = Cause {
-    effect: Effect::Still,
-    kind: Some(Kind::EncoderFrozen),
     within_ticks: None,
-    early_ticks: 0,
-    late_ticks: u64::MAX,
+    ..cause(Effect::Still, Kind::EncoderFrozen, 0)
 };
 const OVERSPEED: Cause = cause(Effect::Overspeed, Kind::Overspeed, 0);
 const BRIEFLY_OVERSPEED: Cause = Cause {
@@ -265,11 +259,8 @@ pub(super) const RESTART_TICKS: u64 = 10 + 20 + COMMAND_SIDE_TICKS;
 /// On a stage that allows pivots to be far from their setpoints: they go where guides let them, while the controller's model of their currents has
 /// the setpoints' rates.
 const LED_ASTRAY: Cause = Cause {
-    effect: Effect::FarOff,
-    kind: Some(Kind::CurrentUnexplained),
     within_ticks: None,
-    early_ticks: 0,
-    late_ticks: u64::MAX,
+    ..cause(Effect::FarOff, Kind::CurrentUnexplained, 0)
 };
 
 impl Injection {

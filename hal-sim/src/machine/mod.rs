@@ -14,4 +14,5 @@ pub mod instruments;
 pub mod plant;
 mod unknown;
 
+pub(crate) use unknown::draw_sensors;
 pub use unknown::unknown;

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use super::devices::{COUNTS_PER_TURN, EncoderParameters, StageParameters};
+use super::devices::{AnalogParameters, COUNTS_PER_TURN, EncoderParameters, StageParameters};
 use super::instruments::workshop::{encoder_of, pivot_of};
 use super::plant::{AXES, FrictionParameters, Imperfections, Payload};
 use crate::random::Random;
@@ -112,7 +112,11 @@ fn draw_surroundings(machine: &mut StageParameters, random: &mut Random) {
     plant.ball_phase_rad = phases(random);
     plant.cable_stiffness_n_m = random.between(1.2, 12.0);
     plant.floor_acceleration_m_s2 = random.between(0.02e-3, 0.1e-3);
-    let analog = &mut machine.analog;
+    draw_sensors(&mut machine.analog, random);
+}
+
+/// Offsets and gains of the sensors of current and supply, within what they are good for.
+pub(crate) fn draw_sensors(analog: &mut AnalogParameters, random: &mut Random) {
     analog.current_offset_counts = [(); AXES].map(|()| 2.0 * random.normal());
     analog.current_gain = [(); AXES].map(|()| 1.0 + 5e-3 * random.normal());
     analog.supply_gain = 1.0 + 5e-3 * random.normal();
