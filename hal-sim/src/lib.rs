@@ -9,10 +9,8 @@
 //! | [`report`] | what a run leaves behind |
 //! | [`parallel`] | runs side by side |
 //! | [`random`] | random numbers from a seed |
-//! | [`date`] | today's date |
 
 pub mod campaign;
-pub mod date;
 pub mod front;
 pub mod machine;
 pub mod parallel;

@@ -29,6 +29,9 @@ const ASSETS: &[Asset] = &[
     asset!("/js/link.js", SCRIPT, "js/link.js"),
     asset!("/js/operator.js", SCRIPT, "js/operator.js"),
     asset!("/js/sequence.js", SCRIPT, "js/sequence.js"),
+    asset!("/js/commissioning.js", SCRIPT, "js/commissioning.js"),
+    asset!("/js/task-picture.js", SCRIPT, "js/task-picture.js"),
+    asset!("/js/tuning.js", SCRIPT, "js/tuning.js"),
     asset!("/js/log.js", SCRIPT, "js/log.js"),
     asset!(
         "/examples/demonstration.gcs",

@@ -2,6 +2,7 @@
 //!
 //! | module | idea |
 //! |---|---|
+//! | [`line`] | questions and answers to a controller, over TCP or a serial line |
 //! | `serve` | a controller in this process, for clients over TCP and a pseudo-terminal |
 //! | `web` | the page, in front of any controller |
 //! | `record` | a record of a controller's data recorder |
@@ -9,6 +10,7 @@
 //! | `commission` | from an unknown machine to one that moves |
 //! | `calibrate` | a built machine is measured, and its calibration given to its controller |
 //! | `settings` | a controller's settings to a file and back |
+//! | [`date`] | today's date |
 //! | [`error_words`] | error numbers in words |
 //! | `reference` | the parameters of the reference stage |
 //! | `assets` | the files of the page, embedded in the program |
@@ -17,7 +19,9 @@ mod assets;
 pub mod board;
 pub mod calibrate;
 pub mod commission;
+pub mod date;
 pub mod error_words;
+pub mod line;
 pub mod record;
 mod reference;
 pub mod serve;

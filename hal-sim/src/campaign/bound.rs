@@ -57,7 +57,9 @@ impl Moment {
                 ToRest {
                     way_mm: stop.way_mm.max(brake.way_mm),
                     turn_deg: stop.turn_deg.max(brake.turn_deg),
-                    deviation_mm: stop.deviation_mm + worse.map_or(0.0, |_| brake.way_mm),
+                    // The second is found with pivots as far off as the first.
+                    deviation_mm: stop.deviation_mm
+                        + worse.map_or(0.0, |_| brake.way_mm + before_mm),
                     rests: true,
                     ..brake
                 }

@@ -28,6 +28,8 @@ const SAME_TICKS: u64 = 20;
 /// Rate from which on a reading may stay the same for as long as frames are bridged only, rad/s: 0.03 of what the encoder has
 /// shown last, which need not be the setpoint's.
 const MOVING_RAD_S: f64 = 0.01;
+/// The same of what the encoder itself has shown last, counts in a tick: the controller asks for 16 and knows a reading's fraction.
+const MOVED_COUNTS: u32 = 14;
 /// Ticks from one look at a pivot to the next: longer than that over a threshold, and it has been looked at.
 const LOOK_TICKS: u64 = 4;
 /// Share of a motor's largest current from which it is held at its limit for certain, and from which it may be: behind a jam that drives it to 8 A
@@ -189,6 +191,8 @@ pub struct Effects<'a> {
     last: [u32; AXES],
     excited: Excited,
     same: [u64; AXES],
+    /// What each encoder moved by in the last tick in which it did, counts.
+    moved: [u32; AXES],
     fast: [u64; AXES],
     at_full: [u64; AXES],
     /// The same, or at its largest current.
@@ -226,6 +230,7 @@ impl<'a> Effects<'a> {
             last: [0; AXES],
             excited: Excited::NONE,
             same: [0; AXES],
+            moved: [0; AXES],
             fast: [0; AXES],
             at_full: [0; AXES],
             at_end: [0; AXES],
@@ -314,6 +319,9 @@ impl<'a> Effects<'a> {
                 swings.look(volts, swing_v, counts);
             }
             self.same[i] = goes_on(self.same[i], step == 0);
+            if step != 0 {
+                self.moved[i] = step;
+            }
             self.fast[i] = goes_on(self.fast[i], f64::from(step) > most_counts);
             let duty = f64::from(now.duty[i]).abs();
             let current_a = f64::from(now.current_counts[i]) * CURRENT_A_PER_COUNT;
@@ -430,7 +438,8 @@ impl<'a> Effects<'a> {
                 (way - way.round()).abs() * TAU > supervision.frozen_rad
             }
             Effect::Still => (0..AXES).any(|i| {
-                let is_moving = f64::from(now.rates_rad_s[i].abs()) > MOVING_RAD_S;
+                let is_moving = f64::from(now.rates_rad_s[i].abs()) > MOVING_RAD_S
+                    || self.moved[i] >= MOVED_COUNTS;
                 self.same[i] >= SAME_TICKS || (is_moving && self.same[i] >= bridged)
             }),
             Effect::Overspeed | Effect::BrieflyOverspeed if self.driven == 0 => false,

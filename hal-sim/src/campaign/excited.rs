@@ -12,6 +12,11 @@ use crate::machine::plant::AXES;
 const WAY: [f64; 2] = [1.003, 0.997];
 const RATE: [f64; 2] = [1.05, 0.95];
 
+/// When it ends that begins as it is asked for.
+const END: u64 = EXCITED_AT + EXCITED_TICKS as u64;
+/// Ticks after it was asked for that an excitation may begin later, and so end: bridges wake up, and leads are tested, before.
+const LATER_TICKS: u64 = 64;
+
 /// Where the pivots were when an excitation was asked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Excited {
@@ -36,7 +41,7 @@ impl Excited {
             self.ticks += 1;
         }
         // Once it is over nobody looks any more.
-        if self.ticks > EXCITED_AT + u64::from(EXCITED_TICKS) {
+        if self.ticks > END + LATER_TICKS {
             self.steps[encoder] = 0;
             return;
         }
@@ -47,14 +52,25 @@ impl Excited {
         }
     }
 
+    /// Whether it may be over, so that nobody has to look; what may be too much the controller may still find.
+    const fn is_over(&self, may_be: bool) -> bool {
+        !may_be && self.ticks > END
+    }
+
     /// Whether one is too far from where it was; `may_be`: or nearly.
     pub fn is_too_far(&self, parameters: &Parameters, may_be: bool) -> bool {
+        if self.is_over(may_be) {
+            return false;
+        }
         let most = WAY[usize::from(may_be)] * counts(parameters.excitation.way_rad);
         (self.now.iter().zip(self.from)).any(|(now, from)| f64::from(way_counts(*now, from)) > most)
     }
 
     /// Whether one is too fast; `may_be`: or nearly.
     pub fn is_too_fast(&self, parameters: &Parameters, may_be: bool) -> bool {
+        if self.is_over(may_be) {
+            return false;
+        }
         let rad = parameters.excitation.rate_rad_s / parameters.limits.rate_hz;
         let most = RATE[usize::from(may_be)] * counts(rad);
         self.steps.iter().any(|step| f64::from(*step) > most)

@@ -20,8 +20,9 @@ mod table {
     use std::thread;
     use std::time::{Duration, Instant};
 
+    use desk::line::Endpoint;
     use desk::serve::{Pacing, ServeOptions, Server};
-    use desk::web::{Endpoint, Page, PageOptions};
+    use desk::web::{Page, PageOptions};
     use hal_sim::machine::devices::SettingsFlash;
     use hal_sim::rig::ControllerMemory;
     use hal_sim::rig::run::RunOptions;

@@ -3,28 +3,15 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
+use crate::person::Person;
 use desk::commission::{Machine, Task};
 use desk::record::RecordError;
 use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 use hal_sim::front::Host;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
-use hal_sim::machine::plant::External;
 use hal_sim::rig::{ControllerMemory, Rig, Told};
 
-/// Where the person holds the platform's middle, m, and how far it is turned, rad, in which time, s.
-const OUT_M: [f64; 2] = [0.025, 0.015];
-const TURN_RAD: f64 = 1.6;
-const PUSH_S: f64 = 1.5;
-const TURN_S: f64 = 4.0;
-/// How stiff a person's hand is, N/m and N s/m, N m/rad and N m s/rad.
-const HAND_N_M: f64 = 2_000.0;
-const HAND_N_S_M: f64 = 200.0;
-const WRIST_N_M_RAD: f64 = 30.0;
-const WRIST_N_M_S_RAD: f64 = 5.0;
-/// How well a jig holds, m and rad.
-const JIG_M: f64 = 20e-6;
-const JIG_RAD: f64 = 0.2e-3;
 /// Ticks that a line may take.
 const PATIENCE: u32 = 400_000;
 const TICK_S: f64 = 50e-6;
@@ -37,8 +24,7 @@ pub struct SimulatedMachine {
     rig: Rig<'static>,
     session: Session,
     answers: Vec<u8>,
-    /// Ticks since the person has begun to turn the platform, and where its theta was.
-    turning: Option<(u32, f64)>,
+    person: Person,
     /// What the encoders' data sheet says.
     scale_periods: u32,
     each_tick: Option<EachTick>,
@@ -85,7 +71,7 @@ impl SimulatedMachine {
             rig: Rig::simulated(ControllerMemory::endless(), stage, parameters, flash),
             session: Session::new(),
             answers: Vec::new(),
-            turning: None,
+            person: Person::default(),
             scale_periods: stage.encoders[0].scale_periods_per_turn,
             each_tick,
             true_pose: Rc::default(),
@@ -112,8 +98,8 @@ impl SimulatedMachine {
     }
 
     fn tick(&mut self) {
-        self.push();
-        let in_hand = self.turning.is_some();
+        self.person.tick(&mut self.rig.front.stage);
+        let in_hand = self.person.has_it_in_hand();
         if let Some(each_tick) = &mut self.each_tick {
             each_tick(&mut self.rig.front, in_hand);
         }
@@ -128,33 +114,6 @@ impl SimulatedMachine {
         for _ in 0..ticks {
             self.tick();
         }
-    }
-
-    /// What the person's hand does.
-    fn push(&mut self) {
-        let Some((ticks, start_rad)) = &mut self.turning else {
-            return;
-        };
-        *ticks += 1;
-        let now_s = f64::from(*ticks) * TICK_S;
-        let plant = &mut self.rig.front.stage.plant;
-        if now_s > PUSH_S + TURN_S {
-            self.turning = None;
-            plant.set_external(External::default());
-            return;
-        }
-        let turned = ((now_s - PUSH_S) / (TURN_S - 1.0)).clamp(0.0, 1.0);
-        let pushed = (now_s / PUSH_S).min(1.0);
-        let (pose, velocity) = (plant.pose(), plant.velocity());
-        let to_rad = *start_rad + TURN_RAD * turned;
-        let force_n =
-            [0, 1].map(|k| HAND_N_M * (pushed * OUT_M[k] - pose[k]) - HAND_N_S_M * velocity[k]);
-        let torque_n_m = WRIST_N_M_RAD * (to_rad - pose[2]) - WRIST_N_M_S_RAD * velocity[2];
-        plant.set_external(External {
-            force_n,
-            torque_n_m,
-            ..External::default()
-        });
     }
 }
 
@@ -184,13 +143,9 @@ impl Machine for SimulatedMachine {
     }
 
     fn request(&mut self, task: Task) -> Result<(), RecordError> {
-        match task {
-            Task::Turn => self.turning = Some((0, self.rig.front.stage.plant.pose()[2])),
-            Task::PutOnJig => {
-                let stage = &mut self.rig.front.stage;
-                stage.set_pose_at_rest([JIG_M, -JIG_M, JIG_RAD]);
-                self.run(400);
-            }
+        self.person.begin(task, &mut self.rig.front.stage);
+        if task == Task::PutOnJig {
+            self.run(400);
         }
         Ok(())
     }

@@ -4,8 +4,10 @@
 //! |---|---|
 //! | [`attended`] | a simulated machine with a simulated person beside it, for what commissions one |
 //! | [`cli`] | the command line: arguments, answers, exit codes |
+//! | [`person`] | a simulated person beside a simulated machine |
 //! | [`simulated`] | the simulated stage as a controller that the desk serves |
 
 pub mod attended;
 pub mod cli;
+pub mod person;
 pub mod simulated;

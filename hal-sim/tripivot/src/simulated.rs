@@ -1,5 +1,10 @@
 //! The simulated stage as a controller that can be served.
 
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+
+use crate::person::Person;
+use desk::commission::Task;
 use desk::serve::Controller;
 use embedded_io::Write;
 use firmware::fault::Fault;
@@ -12,6 +17,9 @@ use hal_sim::rig::{ControllerMemory, Rig};
 pub struct Simulated<'a> {
     rig: Rig<'a>,
     rate_hz: f64,
+    person: Person,
+    /// What the person beside it is asked for.
+    tasks: Option<Receiver<Task>>,
 }
 
 impl<'a> Simulated<'a> {
@@ -27,7 +35,19 @@ impl<'a> Simulated<'a> {
         Self {
             rig: Rig::simulated(memory, &stage, &parameters, flash),
             rate_hz: parameters.limits.rate_hz,
+            person: Person::default(),
+            tasks: None,
         }
+    }
+
+    /// Whoever asks the person beside it for something.
+    pub fn person(&mut self) -> desk::web::Person {
+        let (tasks, asked) = mpsc::channel();
+        self.tasks = Some(asked);
+        Arc::new(move |task| {
+            // A machine that is gone needs no person.
+            let _ = tasks.send(task);
+        })
     }
 }
 
@@ -37,6 +57,12 @@ impl Controller for Simulated<'_> {
     }
 
     fn tick(&mut self) {
+        let task = self.tasks.as_ref().and_then(|tasks| tasks.try_recv().ok());
+        let stage = &mut self.rig.front.stage;
+        if let Some(task) = task {
+            self.person.begin(task, stage);
+        }
+        self.person.tick(stage);
         self.rig.tick(&mut ());
     }
 

@@ -550,8 +550,8 @@ fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
     let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory());
     let speed = machine.ask("VLS?").expect("it answers");
     let chosen = Chosen::only("reference").expect("a step");
-    let all = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
-    let failure = all[0].failure.as_ref().expect("a failure");
+    let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
+    let failure = ran.done[0].failure.as_ref().expect("a failure");
     println!("{failure:?}");
     assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
 }

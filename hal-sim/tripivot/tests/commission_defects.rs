@@ -59,7 +59,7 @@ fn commissioned(mut defect: impl FnMut(&mut Host) + 'static) -> Vec<Done> {
             watched.set(now);
         })),
     );
-    let all = run(&mut machine, &Chosen::all(), &mut |done| {
+    let ran = run(&mut machine, &Chosen::all(), &mut |done| {
         if !BEFORE_SERVO[..3].contains(&done.step.name) {
             let now = driven.get();
             driven.set(Driven { over: true, ..now });
@@ -74,7 +74,7 @@ fn commissioned(mut defect: impl FnMut(&mut Host) + 'static) -> Vec<Done> {
         energy_j * 1e3
     );
     assert!(way_rad < MOST_WAY_RAD && energy_j < MOST_ENERGY_J);
-    all.unwrap_or_else(|error| panic!("{error}"))
+    ran.unwrap_or_else(|error| panic!("{error}")).done
 }
 
 /// Fails at a step, and says what.

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-use hal_sim::date::today;
+use desk::date::today;
 
 use super::Kind;
 

@@ -3,6 +3,7 @@
 import { Aim } from "./aim.js";
 import { announce } from "./announce.js";
 import { commandHelp } from "./commands.js";
+import { Commissioning } from "./commissioning.js";
 import { commandLine } from "./console.js";
 import { Dial } from "./dial.js";
 import { byId } from "./dom.js";
@@ -32,6 +33,7 @@ import { statistics } from "./statistics.js";
 import { showState } from "./state.js";
 import { stopping } from "./stop.js";
 import { switchTheme } from "./theme.js";
+import { Tuning } from "./tuning.js";
 
 const stage = new Stage(new Link());
 const frames = new Frames(stage);
@@ -47,6 +49,8 @@ const firstMove = new FirstMove(stage);
 const operator = new Operator(stage.link);
 log(operator, stage.link);
 new SequencePanel(operator, firstMove);
+const commissioning = new Commissioning(operator, firstMove);
+new Tuning(operator, firstMove);
 drive(stage);
 steps(stage);
 ownership(stage);
@@ -93,6 +97,7 @@ function frame() {
   dial.draw();
   scope.draw();
   lesson.draw();
+  commissioning.draw();
   requestAnimationFrame(frame);
 }
 frame();

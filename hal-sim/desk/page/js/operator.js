@@ -1,4 +1,4 @@
-// The second connection to the server: sequences and the log. The server takes a page whose connection ends for gone.
+// The second connection to the server: sequences, commissioning and the log. The server takes a page whose connection ends for gone.
 
 import { socketTo } from "./link.js";
 
@@ -23,26 +23,26 @@ export class Operator extends EventTarget {
     return this.#socket?.readyState === WebSocket.OPEN;
   }
 
-  /** Gives an order to the sequence; throws when it cannot get there, or nobody answers. */
+  /** Gives an order to the sequence or to the commissioning; throws when it cannot get there, or nobody answers. */
   async order(order) {
     const { stale, age } = this.link.freshness;
-    const begins = order !== "stop" && order !== "pause";
+    const begins = !["stop", "pause", "end"].includes(order.commissioning ?? order);
     if (stale && begins && this.link.open) throw new Error(`not sent: no status for ${age.toFixed(1)} s`);
     if (!this.open) await this.#opened();
-    const told = this.#told();
-    this.#socket.send(JSON.stringify({ token: this.link.token, order, key: this.#key }));
+    const told = this.#told(order.commissioning ? "commissioning" : "sequence");
+    this.#socket.send(JSON.stringify({ token: this.link.token, order, who: this.link.who, key: this.#key }));
     await told;
   }
 
-  /** Every order changes what is told of the sequence. */
-  #told() {
+  /** Every order changes what is told of what it is for. */
+  #told(kind) {
     return new Promise((resolve, reject) => {
       const silence = setTimeout(() => reject(new Error("no answer: whether it was carried out is not known")), PATIENCE_MS);
       const done = () => {
         clearTimeout(silence);
         resolve();
       };
-      this.addEventListener("sequence", done, { once: true });
+      this.addEventListener(kind, done, { once: true });
     });
   }
 

@@ -1,7 +1,7 @@
 //! What the tests of the plan ask the controller.
 
+use crate::line::Endpoint;
 use crate::record::{Desk, RecordError};
-use crate::web::Endpoint;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 

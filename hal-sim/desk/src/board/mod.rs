@@ -11,8 +11,8 @@ mod controller;
 mod plan;
 mod report;
 
+use crate::line::Endpoint;
 use crate::record::RecordError;
-use crate::web::Endpoint;
 use controller::Controller;
 pub use plan::PLAN;
 pub use report::{Done, page};

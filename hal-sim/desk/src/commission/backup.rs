@@ -4,6 +4,7 @@ use super::Machine;
 use super::bench::LIMITS_NOT_BORNE;
 use crate::record::RecordError;
 use crate::settings::{Changed, Settings, SettingsError, export_from, import_to};
+use std::fmt;
 use std::path::Path;
 
 /// See the module.
@@ -15,6 +16,13 @@ pub struct Backup {
 
 /// What is in the file of a controller that had not been commissioned: a comment to whatever else reads it.
 const UNCOMMISSIONED: &str = "# not commissioned";
+
+impl fmt::Display for Backup {
+    /// As its file has it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.told().fmt(f)
+    }
+}
 
 impl Backup {
     /// All that the controller is told.
@@ -34,11 +42,15 @@ impl Backup {
     /// # Errors
     /// [`SettingsError::File`]
     pub fn write(&self, path: &Path) -> Result<(), SettingsError> {
+        self.told().write(path)
+    }
+
+    fn told(&self) -> Settings {
         let mut settings = self.settings.clone();
         if !self.commissioned {
             settings.of += &format!("\n{UNCOMMISSIONED}");
         }
-        settings.write(path)
+        settings
     }
 
     /// Reads it.

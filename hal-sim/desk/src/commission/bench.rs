@@ -29,6 +29,8 @@ const POINTS: &str = "0x16000201";
 const BEFORE: &str = "0x54500900";
 const PERIOD: u32 = 0x0E00_0200;
 pub(super) const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
+/// Longest time for which the platform turns without being asked again: more than any step takes.
+const TURNING_MS: u32 = 120_000;
 /// How often it is looked whether something has ended, s.
 const LOOK_S: f64 = 0.02;
 
@@ -78,9 +80,14 @@ impl<'a> Bench<'a> {
         Ok(bench)
     }
 
+    /// A line, and its answer if it has one.
+    pub fn answer(&mut self, line: &str) -> Answered<Option<String>> {
+        self.machine.ask(line)
+    }
+
     /// A line, and its answer.
     pub fn ask(&mut self, line: &str) -> Answered<String> {
-        Ok(self.machine.ask(line)?.unwrap_or_default())
+        Ok(self.answer(line)?.unwrap_or_default())
     }
 
     /// See [`Machine::scale_periods`].
@@ -254,6 +261,14 @@ impl<'a> Bench<'a> {
         self.delay(0.1)?;
         self.ask("CMS 0")?;
         self.ask("RPA")?;
+        Ok(())
+    }
+
+    /// The platform turns at a steady rate, rad/s, until something else is asked for; with nobody there any more, for as long as
+    /// [`TURNING_MS`] on a serial line, which does not tell that somebody is gone.
+    pub fn turn(&mut self, rate_rad_s: f64) -> Answered<()> {
+        self.ask(&format!("JTM {TURNING_MS}"))?;
+        self.ask(&format!("JOG W {}", rate_rad_s.to_degrees()))?;
         Ok(())
     }
 

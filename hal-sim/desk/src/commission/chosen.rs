@@ -116,6 +116,12 @@ impl Chosen {
         }
     }
 
+    /// Those that are run.
+    #[must_use]
+    pub fn steps(&self) -> &[&'static Step] {
+        &self.steps
+    }
+
     /// Whether what the steps find stays in force.
     pub(super) fn keeps(&self) -> bool {
         self.steps.last().is_some_and(|step| step.name == LAST)

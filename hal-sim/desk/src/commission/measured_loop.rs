@@ -116,12 +116,27 @@ impl MeasuredLoop {
         }
     }
 
+    /// The same plant with other gains.
+    pub fn with(&self, gains: &Gains, chain: &Chain, radius_m: f64) -> Option<Self> {
+        let said = sensitivity(&self.plant(chain, radius_m)?, gains, Timing::STAGE.tick_s);
+        let lines = (self.lines.iter().zip(said))
+            .map(|(line, sensitivity)| LoopLine {
+                sensitivity,
+                ..line.clone()
+            })
+            .collect();
+        let spot = self.spot;
+        Some(Self { spot, lines })
+    }
+
     /// How far the sensitivity is from what gains make of the plant that was measured with it, over its size: the median of the lines. Gains are
     /// those of a servo that is the same for all pivots.
     pub fn distance(&self, gains: &Gains, chain: &Chain, radius_m: f64) -> Option<f64> {
-        let said = sensitivity(&self.plant(chain, radius_m)?, gains, Timing::STAGE.tick_s);
-        let mut off: Vec<f64> = (self.lines.iter().zip(said))
-            .map(|(line, said)| (line.sensitivity - said).norm() / said.norm())
+        let said = self.with(gains, chain, radius_m)?;
+        let mut off: Vec<f64> = (self.lines.iter().zip(said.lines))
+            .map(|(line, said)| {
+                (line.sensitivity - said.sensitivity).norm() / said.sensitivity.norm()
+            })
             .collect();
         off.sort_by(f64::total_cmp);
         off.get(off.len() / 2).copied()
@@ -148,6 +163,37 @@ const HZ: Axis = Axis::Logarithmic(25.0, 2_500.0);
 
 /// Bode and Nyquist plots of a loop, with one that it had before.
 pub fn plot(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> Plot {
+    let also = before.map_or("", |_| "; dashed: before the gains were found");
+    Plot {
+        caption: format!(
+            "The loop {}, as measured{also}. {}",
+            now.spot.words(),
+            read_so()
+        ),
+        svg: draw(now, before),
+    }
+}
+
+/// The same of a loop as other gains would make it, with the one that was measured.
+pub fn plot_predicted(predicted: &MeasuredLoop, measured: &MeasuredLoop) -> Plot {
+    Plot {
+        caption: format!(
+            "The loop {}, as these gains would make it; dashed: as measured with the gains in force. {}",
+            predicted.spot.words(),
+            read_so()
+        ),
+        svg: draw(predicted, Some(measured)),
+    }
+}
+
+/// How the plots are read.
+fn read_so() -> String {
+    format!(
+        "L of a pivot is with the others closed, 1/S - 1. The dashed circle: sensitivity {MOST_MS}; a locus that stays out of it keeps that margin."
+    )
+}
+
+fn draw(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> String {
     let mut svg = Svg::new(SHEET[0], SHEET[1]);
     let frame = |left: f64, top: f64, width: f64, height: f64| Rect {
         left,
@@ -159,18 +205,7 @@ pub fn plot(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> Plot {
     draw_gain(&mut svg, &frame(60.0, 440.0, 420.0, 300.0), now, before);
     draw_phase(&mut svg, &frame(545.0, 580.0, 420.0, 160.0), now, before);
     draw_nyquist(&mut svg, &frame(545.0, 50.0, 420.0, 420.0), now, before);
-    let also = if before.is_some() {
-        "; dashed: before the gains were found"
-    } else {
-        ""
-    };
-    Plot {
-        caption: format!(
-            "The loop {}, as measured{also}. L of a pivot is with the others closed, 1/S - 1. The dashed circle: sensitivity {MOST_MS}; a locus that stays out of it keeps that margin.",
-            now.spot.words()
-        ),
-        svg: svg.finish(),
-    }
+    svg.finish()
 }
 
 /// The curves of each pivot, now and before.

@@ -13,6 +13,7 @@
 //! | `known` | what is known of the machine so far |
 //! | `servo_gains` | gains and filters, to and from the controller's parameters |
 //! | `measured_loop` | a loop as measured, its margins and its plots |
+//! | `by_hand` | what other gains would make of the loops |
 //! | `sines` | multisines on one motor after the other |
 //! | `steps/` | a file each |
 //! | `results` | all of it, as numbers, and what has changed since the last time |
@@ -21,6 +22,7 @@
 
 mod backup;
 mod bench;
+mod by_hand;
 mod chosen;
 mod found;
 mod id;
@@ -33,14 +35,17 @@ mod sines;
 mod steps;
 
 pub use backup::Backup;
+pub use by_hand::{GainsError, MOST_SENSITIVITY, Predicted, PutError, Tunable, Worth};
 pub use chosen::{ChoiceError, Chosen};
 pub use found::{CommissionError, Failure, Finding, Found, Number, Plot, Table};
 pub use report::page;
 pub use results::{Change, Conditions, Results, ResultsError, StepResult};
+pub use servo_gains::{NUMBERS, Numbers};
 pub use steps::STEPS;
 
+use crate::line::Endpoint;
 use crate::record::{Desk, RecordError};
-use crate::web::Endpoint;
+use crate::settings::bring_back;
 pub(crate) use bench::Bench;
 use known::Known;
 
@@ -113,10 +118,18 @@ pub struct Done {
     pub seconds: f64,
 }
 
+/// What a run came to.
+pub struct Ran {
+    /// Each step.
+    pub done: Vec<Done>,
+    /// The loops that were measured last; `None` where a step has failed, or none has measured any.
+    pub tunable: Option<Tunable>,
+}
+
 /// Runs the steps that are chosen until one fails, tells of each as it ends; what all of them came to.
 ///
-/// After a failure what is kept is in force again, and the motors are off; where that is refused, the failure says so. So it is after steps that keep
-/// nothing.
+/// After a failure what is kept is in force again, and the motors are off; where that is refused, the failure says so. After steps that keep
+/// nothing, failed or not, the motors are off and what was in force before is again.
 ///
 /// # Errors
 /// [`RecordError`] when nobody answers, or no longer.
@@ -124,9 +137,13 @@ pub fn run(
     machine: &mut dyn Machine,
     chosen: &Chosen,
     tell: &mut dyn FnMut(&Done),
-) -> Result<Vec<Done>, RecordError> {
+) -> Result<Ran, RecordError> {
     let mut bench = Bench::new(machine)?;
-    let (mut known, mut all) = (Known::default(), Vec::new());
+    let in_force = match chosen.keeps() {
+        true => None,
+        false => Some(bench.ask("SPA?")?),
+    };
+    let (mut known, mut all, mut failed) = (Known::default(), Vec::new(), false);
     for &step in &chosen.steps {
         let start_s = bench.clock_s()?;
         let mut found = Found::default();
@@ -163,16 +180,23 @@ pub fn run(
             seconds,
         };
         tell(&done);
-        let failed = done.failure.is_some();
+        failed = done.failure.is_some();
         all.push(done);
         if failed {
-            return Ok(all);
+            break;
         }
     }
-    if !chosen.keeps() {
-        bench.give_up()?;
+    if let Some(in_force) = in_force {
+        if !failed {
+            bench.give_up()?;
+        }
+        bring_back(&mut |line| bench.answer(line), &in_force)?;
     }
-    Ok(all)
+    let tunable = match failed {
+        true => None,
+        false => Tunable::of(known, &mut bench)?,
+    };
+    Ok(Ran { done: all, tunable })
 }
 
 /// After a failure: everything as it was before, or what was refused of that.

@@ -210,6 +210,6 @@ fn go_to(bench: &mut Bench<'_>, spot: &Spot) -> Result<(), CommissionError> {
 }
 
 fn turn(bench: &mut Bench<'_>, spot: &Spot) -> Result<(), CommissionError> {
-    bench.ask(&format!("JOG W {}", spot.rate_rad_s.to_degrees()))?;
+    bench.turn(spot.rate_rad_s)?;
     Ok(bench.delay(BEGIN_S)?)
 }

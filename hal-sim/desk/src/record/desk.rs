@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::Record;
 use super::{RecordError, answer};
-use crate::web::{Endpoint, Line};
+use crate::line::{Endpoint, Line};
 
 /// How often the length of the record is asked for.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -134,7 +134,7 @@ pub(crate) fn strange(line: &str, answer: &str) -> RecordError {
 }
 
 /// What may help against a refusal.
-fn hint(line: &str, code: u16) -> &'static str {
+pub(crate) fn hint(line: &str, code: u16) -> &'static str {
     match (line.get(..3), code) {
         (Some("DRC"), 15 | 58) => ": HDR? of the controller lists sources and options",
         (Some("DRT"), 17) => ": this signal cannot trigger",

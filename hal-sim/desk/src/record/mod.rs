@@ -15,7 +15,7 @@ use std::fmt;
 use std::io;
 use std::time::Duration;
 
-use crate::web::Endpoint;
+use crate::line::Endpoint;
 pub(crate) use desk::Desk;
 use drawing::Progress;
 pub use table::Record;
@@ -95,6 +95,9 @@ pub enum RecordError {
         /// What the system says.
         error: io::Error,
     },
+    /// Somebody has ended it.
+    #[error("ended by {0}")]
+    Ended(String),
     /// The controller refuses a line.
     #[error("the controller refused `{line}` with GCS error {code}{hint}")]
     Refused {

@@ -9,9 +9,9 @@ mod file;
 
 pub use file::{Macro, Parameter, Settings, SettingsError};
 
+use crate::line::Endpoint;
 use crate::record::RecordError;
 use crate::record::desk::Desk;
-use crate::web::Endpoint;
 use firmware::gcs::PARAMETERS;
 
 /// A line to a controller, and its answer if it has one.
@@ -164,6 +164,14 @@ fn give_macro(ask: &mut Ask<'_>, wanted: &Macro) -> Result<(), RecordError> {
     recorded.and(ended)
 }
 
+/// Gives a controller the values in force that `SPA?` has told, without having them kept.
+pub(crate) fn bring_back(ask: &mut Ask<'_>, values: &str) -> Result<(), RecordError> {
+    let before = (values.lines())
+        .filter_map(|line| line.strip_prefix("1 ")?.split_once('='))
+        .filter(|(id, _)| is_kept(id));
+    set(ask, before.collect())
+}
+
 /// Gives back the values, as `SPA?` has told them, and the macros that were there.
 fn take_back(
     ask: &mut Ask<'_>,
@@ -171,10 +179,7 @@ fn take_back(
     changed: &[&Macro],
     macros_there: &[Macro],
 ) -> Result<(), RecordError> {
-    let before = (values.lines())
-        .filter_map(|line| line.strip_prefix("1 ")?.split_once('='))
-        .filter(|(id, _)| is_kept(id));
-    set(ask, before.collect())?;
+    bring_back(ask, values)?;
     let now = macros(ask)?;
     for changed in changed
         .iter()

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use firmware::gcs::{Action, ErrorCode, Query, Request, parse};
 
-use super::line::Answer;
+use crate::line::Answer;
 
 /// Number of a viewer.
 pub(super) type ViewerNumber = u64;

@@ -14,13 +14,13 @@ use serde::Serialize;
 use tokio::sync::{broadcast, oneshot, watch};
 
 use super::arbiter::{Arbiter, Verdict, ViewerNumber, page_name};
-use super::line::{Answer, Line};
-use super::own_line::{OwnLine, jog_limit};
+use super::own_line::{Jogs, OwnLine};
 use super::password::random_text;
-use super::port::{Endpoint, Port};
 use super::request::Refusal;
 use super::stops::Stops;
 use super::watch::{FAST, SLOW_EVERY, slow};
+use crate::line::{Answer, Line};
+use crate::line::{Endpoint, Port};
 
 /// Between two status messages: a screen's refresh.
 const PERIOD: Duration = Duration::from_micros(16_667);
@@ -71,6 +71,7 @@ enum Pending {
     Line {
         viewer: ViewerNumber,
         line: String,
+        jogs: Jogs,
         /// Stops when it was asked for.
         stops: u64,
         answer: oneshot::Sender<Result<Answer, Refusal>>,
@@ -144,6 +145,11 @@ impl Bridge {
         Arc::clone(&self.no_controller)
     }
 
+    /// Where the controller is, or should be.
+    pub fn place(&self) -> String {
+        self.endpoint.to_string()
+    }
+
     /// The status messages from now on.
     pub fn status(&self) -> broadcast::Receiver<Arc<str>> {
         self.status.subscribe()
@@ -154,7 +160,7 @@ impl Bridge {
         self.hello.clone()
     }
 
-    /// The way of one more viewer.
+    /// The way of one more viewer, or of what runs here.
     pub fn way(&self) -> io::Result<HeldWay> {
         let viewer = self.viewers.fetch_add(1, Ordering::Relaxed) + 1;
         let own = (self.endpoint.is_tcp())
@@ -179,11 +185,12 @@ impl Bridge {
         ways.get(key).cloned().unwrap_or_default()
     }
 
-    async fn ask(&self, viewer: ViewerNumber, line: String) -> Result<Answer, Refusal> {
+    async fn ask(&self, viewer: ViewerNumber, line: String, jogs: Jogs) -> Result<Answer, Refusal> {
         let (answer, answered) = oneshot::channel();
         let pending = Pending::Line {
             viewer,
             line,
+            jogs,
             stops: self.stops.count(),
             answer,
         };
@@ -235,9 +242,14 @@ impl Way {
 
     /// Has a line carried out in its turn.
     pub async fn ask(&self, line: String) -> Result<Answer, Refusal> {
+        self.ask_so(line, Jogs::Held).await
+    }
+
+    /// The same, with constant velocities that last so.
+    pub async fn ask_so(&self, line: String, jogs: Jogs) -> Result<Answer, Refusal> {
         match self.own_line() {
-            Some(own) => own.ask(line).await,
-            None => self.bridge.ask(self.viewer, line).await,
+            Some(own) => own.ask(line, jogs).await,
+            None => self.bridge.ask(self.viewer, line, jogs).await,
         }
     }
 
@@ -350,10 +362,11 @@ impl Worker {
             Pending::Line {
                 viewer,
                 line: text,
+                jogs,
                 stops,
                 answer,
             } => {
-                let result = self.carry_out(line, viewer, &text, stops);
+                let result = self.carry_out(line, (viewer, jogs), &text, stops);
                 let told = result.as_ref().map_or(Err(Refusal::Broken), Clone::clone);
                 // A viewer that is gone needs no answer.
                 let _ = answer.send(told);
@@ -369,7 +382,7 @@ impl Worker {
     fn carry_out(
         &self,
         line: &mut Line,
-        viewer: ViewerNumber,
+        (viewer, jogs): (ViewerNumber, Jogs),
         text: &str,
         asked_after: u64,
     ) -> io::Result<Result<Answer, Refusal>> {
@@ -383,7 +396,7 @@ impl Worker {
             }
             Verdict::Send(lines) => lines,
         };
-        if let Some(limit) = jog_limit(text) {
+        if let Some(limit) = jogs.limit(text) {
             lines.insert(0, limit);
         }
         let mut answer = Answer {

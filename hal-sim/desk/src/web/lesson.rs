@@ -13,6 +13,20 @@ const SWING_DEG: f64 = 40.0;
 /// Largest shift, mm.
 const SHIFT_MM: f64 = 50.0;
 
+/// Orientation at which guide 1 points along x, deg.
+const JIG_DEG: f64 = 30.0;
+/// How far out a person pushes the platform before it is turned, mm; the share of the time that this takes; how far it is turned, deg.
+const OUT_MM: [f64; 2] = [32.0, 18.0];
+const PUSHED: f64 = 0.3;
+const QUARTER_DEG: f64 = 90.0;
+
+/// See [`tasks_json`].
+#[derive(Serialize)]
+struct Tasks {
+    turn: Vec<Frame>,
+    jig: Vec<Frame>,
+}
+
 /// A movement, and what it shows.
 #[derive(Serialize)]
 struct Movement {
@@ -75,6 +89,23 @@ pub(super) fn json() -> String {
     serde_json::to_string(&movements).unwrap_or_default()
 }
 
+/// What commissioning asks a person for, as JSON: how the platform is turned by hand, and how it stands in its jig.
+pub(super) fn tasks_json() -> String {
+    let tasks = Tasks {
+        turn: of_poses(|share| {
+            let pushed = (share / PUSHED).min(1.0);
+            let turned = ((share - PUSHED) / (1.0 - PUSHED)).max(0.0);
+            [
+                OUT_MM[0] * pushed,
+                OUT_MM[1] * pushed,
+                JIG_DEG + QUARTER_DEG * turned,
+            ]
+        }),
+        jig: of_poses(|_| [0.0, 0.0, JIG_DEG]),
+    };
+    serde_json::to_string(&tasks).unwrap_or_default()
+}
+
 fn shares() -> impl Iterator<Item = f64> {
     (0..FRAMES).map(|frame| frame as f64 / FRAMES as f64)
 }
@@ -124,6 +155,20 @@ fn place(pose: &Pose<f64>) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_pictures_of_the_tasks_are_what_their_words_say() {
+        let tasks: serde_json::Value = serde_json::from_str(&tasks_json()).unwrap();
+        let pivots: Vec<f64> = serde_json::from_value(tasks["jig"][0]["pivots"].clone()).unwrap();
+        for (pivot, at_deg) in pivots.iter().zip([0.0, 120.0, 240.0]) {
+            assert!((pivot - at_deg).abs() < 1e-9, "{pivots:?}");
+        }
+        let last = &tasks["turn"][FRAMES - 1]["pose"];
+        let at = |k: usize| last[k].as_f64().unwrap();
+        let out_mm = at(0).hypot(at(1));
+        assert!((20.0..=50.0).contains(&out_mm), "2 to 5 cm: {out_mm}");
+        assert!(at(2) > JIG_DEG + 85.0, "to the left by a quarter: {last}");
+    }
 
     #[test]
     fn the_captions_are_true() {

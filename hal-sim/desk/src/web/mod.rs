@@ -11,8 +11,6 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `port` | TCP or a serial line, opened |
-//! | `line` | questions and answers over it |
 //! | `watch` | which questions are asked over and over |
 //! | `bridge` | the thread that owns the line: the status as often as a screen shows it, requests of viewers that share it in between |
 //! | `own_line` | over TCP: a viewer's own connection |
@@ -25,7 +23,7 @@
 //! | `http` | connections of browsers, bounded in number and patience |
 //! | `viewer` | one browser: status and answers out, requests in |
 //! | `life` | whether a page is still there |
-//! | `operator` | sequences that run here, and the log of who did what |
+//! | `operator` | sequences and commissioning that run here, and the log of who did what |
 //! | `lesson` | the mechanism's three movements, for the page's explanation |
 //! | `server`, `shared` | the page's files, the token, the WebSockets; what their handlers share |
 //!
@@ -38,12 +36,10 @@ mod guard;
 mod http;
 mod lesson;
 mod life;
-mod line;
 mod login;
 mod operator;
 mod own_line;
 mod password;
-mod port;
 mod request;
 mod server;
 mod shared;
@@ -53,9 +49,8 @@ mod watch;
 
 use std::io;
 
-pub(crate) use line::Line;
+pub use operator::commissioning::Person;
 pub use password::new_password;
-pub use port::Endpoint;
 pub use server::{Page, PageOptions};
 pub use watch::questions;
 

@@ -11,10 +11,10 @@ use std::time::Duration;
 use firmware::gcs::{Action, Request, parse};
 use tokio::sync::oneshot;
 
-use super::line::{Answer, Line};
-use super::port::{Endpoint, Port};
 use super::request::Refusal;
 use super::stops::Stops;
+use crate::line::{Answer, Line};
+use crate::line::{Endpoint, Port};
 
 /// Requests that may wait for the line.
 const WAITING: usize = 16;
@@ -23,9 +23,19 @@ const PATIENCE: Duration = Duration::from_secs(86_400);
 /// How long a constant velocity of a page lasts without being renewed, ms: a page that is gone does not let a button go.
 const JOG_TIME_MS: u32 = 300;
 
+/// For how long constant velocities of a line last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Jogs {
+    /// As long as a button is held, and renews them.
+    Held,
+    /// As long as whoever asks for them says.
+    Free,
+}
+
 /// A line that waits for its turn.
 struct Pending {
     line: String,
+    jogs: Jogs,
     /// Stops when it was asked for.
     stops: u64,
     answer: oneshot::Sender<Result<Answer, Refusal>>,
@@ -67,10 +77,11 @@ impl OwnLine {
     }
 
     /// Has a line carried out.
-    pub async fn ask(&self, line: String) -> Result<Answer, Refusal> {
+    pub async fn ask(&self, line: String, jogs: Jogs) -> Result<Answer, Refusal> {
         let (answer, answered) = oneshot::channel();
         let pending = Pending {
             line,
+            jogs,
             stops: self.stops.count(),
             answer,
         };
@@ -108,6 +119,7 @@ impl Worker {
         let mut line = None;
         for Pending {
             line: text,
+            jogs,
             stops,
             answer,
         } in incoming
@@ -118,9 +130,9 @@ impl Worker {
                 continue;
             }
             let result = match &mut line {
-                Some(line) => carry_out(line, &text),
+                Some(line) => carry_out(line, &text, jogs),
                 closed => match self.open() {
-                    Ok(opened) => carry_out(closed.insert(opened), &text),
+                    Ok(opened) => carry_out(closed.insert(opened), &text, jogs),
                     Err(_) => Err(Refusal::Offline),
                 },
             };
@@ -147,22 +159,25 @@ impl Worker {
     }
 }
 
-fn carry_out(line: &mut Line, text: &str) -> Result<Answer, Refusal> {
+fn carry_out(line: &mut Line, text: &str, jogs: Jogs) -> Result<Answer, Refusal> {
     let mut ask = |text: &str| line.ask(text).map_err(|_| Refusal::Broken);
-    if let Some(limit) = jog_limit(text) {
+    if let Some(limit) = jogs.limit(text) {
         ask(&limit)?;
     }
     ask(text)
 }
 
-/// What goes before a line that lasts as long as a button is held: who looks to its renewal may forget it with a restart
-/// (`RBT`, a reset), so it is said each time. A controller that does not know it says so, and does without.
-pub(super) fn jog_limit(line: &str) -> Option<String> {
-    let is_held = match parse(line.as_bytes()) {
-        Ok(Request::Act(Action::Jog(_))) => true,
-        Ok(Request::Act(Action::Recover(on))) => on != 0.0,
-        // What a variable stands for is not known here.
-        _ => line.contains('$'),
-    };
-    is_held.then(|| format!("JTM {JOG_TIME_MS}"))
+impl Jogs {
+    /// What goes before a line that lasts as long as a button is held: who looks to its renewal may forget it with a restart
+    /// (`RBT`, a reset), so it is said each time. A controller that does not know it says so, and does without.
+    pub(super) fn limit(self, line: &str) -> Option<String> {
+        let is_held = self == Self::Held
+            && match parse(line.as_bytes()) {
+                Ok(Request::Act(Action::Jog(_))) => true,
+                Ok(Request::Act(Action::Recover(on))) => on != 0.0,
+                // What a variable stands for is not known here.
+                _ => line.contains('$'),
+            };
+        is_held.then(|| format!("JTM {JOG_TIME_MS}"))
+    }
 }

@@ -8,7 +8,7 @@ use std::thread::{self, JoinHandle};
 use axum::Router;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::extract::ws::{WebSocket, WebSocketUpgrade};
-use axum::extract::{Request, State};
+use axum::extract::{Path, Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
@@ -18,13 +18,14 @@ use tokio::sync::{Semaphore, oneshot};
 
 use super::bridge::Bridge;
 use super::guard::Guard;
+use super::operator::commissioning::Person;
 use super::operator::{self, Operator};
 use super::password::Password;
-use super::port::Endpoint;
 use super::request::MESSAGE_BYTES;
 use super::shared::Shared;
 use super::{PageError, http, lesson, login, viewer};
 use crate::assets;
+use crate::line::Endpoint;
 use drawing::assets::Asset;
 
 /// What browsers are to enforce: nothing from elsewhere, and no page of somebody else's around this one.
@@ -51,7 +52,7 @@ pub struct Page {
 }
 
 /// Where a page is, and who may see it.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct PageOptions {
     /// Address and port to listen at, as text; port 0 takes a free one.
     pub address: String,
@@ -59,6 +60,8 @@ pub struct PageOptions {
     pub password: Option<String>,
     /// Where browsers find it, if a proxy stands in front of it: scheme, host and port.
     pub public_url: Option<String>,
+    /// Whoever does with a simulated machine what commissioning asks a person for.
+    pub person: Option<Person>,
 }
 
 impl PageOptions {
@@ -69,6 +72,7 @@ impl PageOptions {
             address: address.to_owned(),
             password: None,
             public_url: None,
+            person: None,
         }
     }
 }
@@ -99,7 +103,7 @@ impl Page {
             password: (options.password.clone().map(Password::new).transpose()?).map(Arc::new),
             operator: {
                 let _within = runtime.enter();
-                Operator::start(bridge.clone())
+                Operator::start(bridge.clone(), options.person.clone())?
             },
             bridge,
             sockets: Arc::new(Semaphore::new(SOCKETS)),
@@ -153,7 +157,9 @@ fn router(shared: Shared) -> Router {
         .route("/live", get(live))
         .route(login::PATH, get(login::form).post(login::enter))
         .route("/operator", get(operate))
-        .route("/lesson.json", get(lesson_frames));
+        .route("/commissioning/{file}", get(commissioning_file))
+        .route("/lesson.json", get(lesson_frames))
+        .route("/tasks.json", get(task_frames));
     for asset in assets::all() {
         router = router.route(asset.path, get(async || file(asset)));
     }
@@ -196,8 +202,21 @@ async fn token(State(shared): State<Shared>) -> Response {
     shared.guard.token().to_owned().into_response()
 }
 
+async fn task_frames() -> Response {
+    (
+        [(header::CONTENT_TYPE, "application/json")],
+        lesson::tasks_json(),
+    )
+        .into_response()
+}
+
 async fn lesson_frames() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], lesson::json()).into_response()
+}
+
+/// Plots, tables and reports of a commissioning.
+async fn commissioning_file(State(shared): State<Shared>, Path(name): Path<String>) -> Response {
+    shared.operator.commissioning.files().answer(&name)
 }
 
 async fn live(State(shared): State<Shared>, headers: HeaderMap, upgrade: Upgrade) -> Response {

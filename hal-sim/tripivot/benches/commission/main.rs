@@ -90,7 +90,9 @@ fn commissioned(seed: u64) -> Row {
     let done = run(&mut counted, &Chosen::all(), &mut |done| {
         warmth.note(done.step.name);
     });
-    let done = done.unwrap_or_else(|error| panic!("machine {seed}: {error}"));
+    let done = done
+        .unwrap_or_else(|error| panic!("machine {seed}: {error}"))
+        .done;
     let refused = done.last().and_then(|last| {
         let failure = last.failure.as_ref()?;
         Some(format!("{}: {}", last.step.name, failure.what))

@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread::{self, JoinHandle};
 
+use desk::line::Endpoint;
 use desk::serve::{Notice, Pacing, ServeOptions, Server};
-use desk::web::{Endpoint, Page, PageOptions};
+use desk::web::{Page, PageOptions};
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;

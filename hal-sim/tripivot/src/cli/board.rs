@@ -8,8 +8,8 @@ use super::arguments::BoardRun;
 use super::error::CliError;
 use super::view::endpoint;
 use desk::board::{Done, Found, PLAN, PlanOptions, Test, Verdict, page, run as run_plan};
+use desk::date;
 use drawing::WholeFile;
-use hal_sim::date;
 
 pub(super) fn run(arguments: &BoardRun) -> Result<ExitCode, CliError> {
     if arguments.list {

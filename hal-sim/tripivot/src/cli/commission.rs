@@ -15,8 +15,8 @@ use desk::commission::{
     Attended, Backup, Change, Chosen, Conditions, Done, Machine, Results, STEPS, page,
     run as run_steps,
 };
+use desk::date;
 use drawing::ReportError;
-use hal_sim::date;
 use hal_sim::machine::devices::SettingsFlash;
 
 /// Names of the files in the folder.
@@ -155,13 +155,13 @@ fn conditions(on: &Commissioned, machine: &mut dyn Machine) -> Result<Conditions
 /// Runs the steps, and tells each as it ends.
 fn steps(machine: &mut dyn Machine, chosen: &Chosen) -> Result<Vec<Done>, CliError> {
     let mut written = Ok(());
-    let all = run_steps(machine, chosen, &mut |done| {
+    let ran = run_steps(machine, chosen, &mut |done| {
         if written.is_ok() {
             written = io::stdout().write_all(told(done).as_bytes());
         }
     })?;
     written.map_err(CliError::output)?;
-    Ok(all)
+    Ok(ran.done)
 }
 
 /// Tables of the steps as files; a later step's replaces an earlier one's.

@@ -9,8 +9,9 @@ use super::error::CliError;
 use super::signal::until_signal;
 use super::stage::stage_options;
 use super::view::page;
+use desk::line::Endpoint;
 use desk::serve::{Printer, REMOTE_MEANS, ServeOptions, Server, check_address};
-use desk::web::{Endpoint, Page};
+use desk::web::Page;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::ControllerMemory;
 
@@ -37,7 +38,12 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
         Some(OFF) => None,
         web => {
             let endpoint = Endpoint::Tcp(reached_at(own).to_string());
-            Some(page(web, &arguments.access, endpoint)?)
+            Some(page(
+                web,
+                &arguments.access,
+                endpoint,
+                Some(stage.person()),
+            )?)
         }
     };
     announce(&server, page.as_ref(), is_remote, &settings).map_err(CliError::output)?;

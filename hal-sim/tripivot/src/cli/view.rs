@@ -11,8 +11,9 @@ use std::time::Duration;
 use super::arguments::{Access, Controller, View};
 use super::error::CliError;
 use super::signal::until_signal;
+use desk::line::Endpoint;
 use desk::serve::{REMOTE_PAGE_MEANS, check_address};
-use desk::web::{Endpoint, Page, PageError, PageOptions, new_password};
+use desk::web::{Page, PageError, PageOptions, Person, new_password};
 
 /// Where the page is unless it is told otherwise.
 const ADDRESS: &str = "127.0.0.1:8080";
@@ -27,7 +28,7 @@ pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
     let endpoint = endpoint(&arguments.controller)?;
     let stop = until_signal()?;
     let place = endpoint.to_string();
-    let page = page(arguments.web.as_deref(), &arguments.access, endpoint)?;
+    let page = page(arguments.web.as_deref(), &arguments.access, endpoint, None)?;
     let text = format!(
         "page at http://{}/ for the controller at {place}\nCtrl-C ends it\n",
         page.address()
@@ -62,11 +63,12 @@ pub(super) fn endpoint(controller: &Controller) -> Result<Endpoint, CliError> {
 }
 
 /// The page where it was asked for, or at its usual place or a free port; with a password where others than this machine may
-/// reach it.
+/// reach it. `person`: beside a simulated machine.
 pub(super) fn page(
     address: Option<&str>,
     access: &Access,
     endpoint: Endpoint,
+    person: Option<Person>,
 ) -> Result<Page, CliError> {
     let is_remote = check_address(address.unwrap_or(ADDRESS), access.allow_remote)?;
     if is_remote {
@@ -77,6 +79,7 @@ pub(super) fn page(
         address: address.to_owned(),
         password: password.clone(),
         public_url: access.public_url.clone(),
+        person: person.clone(),
     };
     let page = match address {
         Some(address) => Page::start(&options(address), endpoint),

@@ -9,8 +9,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::served::{PATIENCE, Served, connect};
+use desk::line::Endpoint;
 use desk::serve::{Controller, Notice, ServeOptions, Server};
-use desk::web::{Endpoint, Page, PageOptions};
+use desk::web::{Page, PageOptions};
 use firmware::fault::Fault;
 use firmware::gcs::Session;
 use hal_sim::machine::devices::SettingsFlash;

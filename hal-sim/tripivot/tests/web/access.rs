@@ -1,7 +1,8 @@
 //! Who may look and who may drive.
 
 use crate::bench::{PATIENCE, Stage, Viewer, connect, connect_to, get, token};
-use desk::web::{Endpoint, Page, PageOptions};
+use desk::line::Endpoint;
+use desk::web::{Page, PageOptions};
 use serde_json::json;
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};

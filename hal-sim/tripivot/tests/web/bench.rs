@@ -7,8 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use desk::line::Endpoint;
 use desk::serve::{ServeOptions, Server};
-use desk::web::{Endpoint, Page, PageOptions};
+use desk::web::{Page, PageOptions};
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;

@@ -1,7 +1,8 @@
 //! Connections of their own, and one line for all: whose commands count, and what ends with a page.
 
 use crate::bench::{PATIENCE, Stage, Viewer};
-use desk::web::{Endpoint, Page, PageOptions};
+use desk::line::Endpoint;
+use desk::web::{Page, PageOptions};
 use serde_json::json;
 use std::io::{self};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};

@@ -1,7 +1,7 @@
 //! Nothing that was asked for before a stop follows it.
 
 use crate::bench::{Stage, Viewer, page_at};
-use desk::web::Endpoint;
+use desk::line::Endpoint;
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpListener};
 use std::sync::{Arc, Mutex};

@@ -23,7 +23,7 @@ pub(super) fn run(
     let mut steady: [Vec<SteadyRate>; AXES] = Default::default();
     bench.reserve(MOST_ROWS)?;
     for rate in RATES_RAD_S {
-        bench.ask(&format!("JOG W {}", rate.to_degrees()))?;
+        bench.turn(rate)?;
         bench.delay(REACHED_S)?;
         for (steady, one) in steady.iter_mut().zip(measure(bench, rate)?) {
             steady.push(one);

@@ -48,7 +48,10 @@ const WIDE_COUNTS: f64 = 100.0;
 const USUAL_COUNTS: f64 = 2.0;
 
 /// The same for gains that were found.
-pub(super) fn rest_for(bench: &mut Bench<'_>, gains: &Gains) -> Result<(), CommissionError> {
+pub(in crate::commission) fn rest_for(
+    bench: &mut Bench<'_>,
+    gains: &Gains,
+) -> Result<(), CommissionError> {
     let stiffness = rest_stiffness(gains.least_velocity_v_s_rad());
     Ok(bench.set(&[(id::REST_STIFFNESS, stiffness)])?)
 }

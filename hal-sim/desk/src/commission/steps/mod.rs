@@ -13,14 +13,16 @@ mod reference;
 mod response;
 mod ring_servo;
 mod sde;
+mod step_response;
 mod tuning;
 mod verification;
 mod windings;
 mod wiring;
+mod wiring_picture;
 mod zeros;
 
 use super::Step;
-pub(super) use gains::settle_widely;
+pub(super) use gains::{rest_for, settle_widely};
 
 /// See the module.
 pub static STEPS: &[Step] = &[
@@ -81,7 +83,7 @@ pub static STEPS: &[Step] = &[
     },
     Step {
         name: "response",
-        about: "the loop with these gains, in the middle and far out: sensitivity and margins of all three pivots together",
+        about: "the loop with these gains, in the middle and far out: sensitivity and margins of all three pivots together; a small step",
         run: response::run,
     },
     Step {
@@ -96,7 +98,7 @@ pub static STEPS: &[Step] = &[
     },
     Step {
         name: "verification",
-        about: "moves at full speed: following error and settling",
+        about: "moves at full speed: following error and settling; a small step",
         run: verification::run,
     },
     Step {

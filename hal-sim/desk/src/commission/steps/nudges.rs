@@ -1,5 +1,6 @@
 //! A rising voltage on one bridge after the other, both ways, until a ring moves: which one, which way, and what it takes.
 
+use super::wiring_picture::picture;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
@@ -93,6 +94,7 @@ pub(super) fn run(
             "pivots 1, 2, 3, to the left of each other",
             format!("ports {ports:?}, bridges {bridges:?}"),
         ));
+        found.plots.push(picture(known));
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The loop as it is with the gains so far: in the middle, and far out.
 
 use super::identification::allow;
+use super::step_response::step_response;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
@@ -48,7 +49,7 @@ pub(super) fn run(
         found.plots.push(plot(&measured, None));
         known.loops.push(measured);
     }
-    Ok(())
+    step_response(bench, found)
 }
 
 fn told(measured: &MeasuredLoop) -> Finding {

@@ -121,7 +121,7 @@ fn measure(
         ];
     }
     bench.reserve(ROWS)?;
-    bench.ask(&format!("JOG W {}", RATE_RAD_S.to_degrees()))?;
+    bench.turn(RATE_RAD_S)?;
     bench.delay(REACHED_S)?;
     let mut seen = [[None; 2]; AXES];
     for record in 0..2 {

@@ -1,6 +1,7 @@
 //! Moves as the machine will make them, there and back.
 
 use super::gains::{rest_for, settle_as_usual};
+use super::step_response::step_response;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
@@ -74,5 +75,5 @@ pub(super) fn run(
         late == 0.0,
         "EVT? and LST? tell of the loop's time",
     ));
-    Ok(())
+    step_response(bench, found)
 }

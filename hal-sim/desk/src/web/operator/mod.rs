@@ -5,9 +5,11 @@
 //! | `sequence`, `sequence_status` | a script under way, for pages; their orders, its state |
 //! | `runner` | the task that runs it |
 //! | `performer` | one line of it over the line that all share: waits and delays happen here, not in the controller |
+//! | `commissioning` | the steps of commissioning, and gains by hand |
 //! | `journal` | who did what |
-//! | `socket` | both, to a page and from it |
+//! | `socket` | all of it, to a page and from it |
 
+pub(super) mod commissioning;
 mod journal;
 mod performer;
 mod runner;
@@ -15,26 +17,31 @@ mod sequence;
 mod sequence_status;
 mod socket;
 
+use std::io;
+
 use super::bridge::Bridge;
+use commissioning::{Commissioning, Person};
 pub(super) use journal::Journal;
 pub(super) use sequence::Sequence;
 pub(super) use sequence_status::Order;
 pub(super) use socket::{MESSAGE_BYTES, serve};
 
-/// Both, for whoever serves pages.
+/// All of it, for whoever serves pages.
 #[derive(Clone)]
 pub(super) struct Operator {
     pub sequence: Sequence,
+    pub commissioning: Commissioning,
     pub journal: Journal,
 }
 
 impl Operator {
-    /// Both begin; to be called within the runtime.
-    pub fn start(bridge: Bridge) -> Self {
+    /// It begins; to be called within the runtime.
+    pub fn start(bridge: Bridge, person: Option<Person>) -> io::Result<Self> {
         let journal = Journal::new();
-        Self {
-            sequence: Sequence::start(bridge, journal.clone()),
+        Ok(Self {
+            sequence: Sequence::start(bridge.clone(), journal.clone()),
+            commissioning: Commissioning::start(bridge, journal.clone(), person)?,
             journal,
-        }
+        })
     }
 }

@@ -1,4 +1,4 @@
-//! A page's second connection: the sequence and the log out, orders in.
+//! A page's second connection: the sequence, the commissioning and the log out, orders in.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,6 +8,7 @@ use serde::Deserialize;
 use tokio::sync::broadcast::error::RecvError;
 
 use super::Operator;
+use super::commissioning::{self, Ordered};
 use super::sequence_status::{Order, Orderer};
 use crate::web::guard::Guard;
 use crate::web::life::{Life, send};
@@ -21,6 +22,9 @@ pub(in crate::web) const MESSAGE_BYTES: usize = 256 << 10;
 struct Request {
     token: String,
     order: Wanted,
+    /// Whoever uses the page.
+    #[serde(default)]
+    who: String,
     /// Of the page's way to the controller.
     #[serde(default)]
     key: String,
@@ -35,6 +39,14 @@ enum Wanted {
     Pause,
     Continue,
     Stop,
+    Commissioning(commissioning::Order),
+}
+
+/// What a page wants, and of whom.
+#[derive(Debug, PartialEq)]
+enum Taken {
+    Sequence(Order),
+    Commissioning(Ordered),
 }
 
 /// Serves a page until it is gone.
@@ -42,12 +54,15 @@ pub(in crate::web) async fn serve(mut socket: WebSocket, operator: Operator, gua
     static PAGES: AtomicU64 = AtomicU64::new(1);
     let page = PAGES.fetch_add(1, Ordering::Relaxed);
     talk(&mut socket, &operator, &guard, page).await;
+    operator.commissioning.gone(page);
     operator.sequence.order(Order::Gone { page });
 }
 
 async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: u64) {
     let mut told = operator.sequence.told();
     told.mark_changed();
+    let mut commissioning = operator.commissioning.told();
+    commissioning.mark_changed();
     let (kept, mut news) = operator.journal.read();
     for entry in kept {
         if !send(socket, Message::Text(entry.as_ref().into())).await {
@@ -63,11 +78,17 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
                 if let Message::Text(text) = message
                     && let Some(order) = order(&text, guard, page)
                 {
-                    operator.sequence.order(order);
+                    match order {
+                        Taken::Sequence(order) => operator.sequence.order(order),
+                        Taken::Commissioning(ordered) => operator.commissioning.order(ordered),
+                    }
                 }
                 continue;
             }
             Ok(()) = told.changed() => Message::Text(told.borrow_and_update().as_ref().into()),
+            Ok(()) = commissioning.changed() => {
+                Message::Text(commissioning.borrow_and_update().as_ref().into())
+            }
             entry = news.recv() => match entry {
                 Ok(entry) => Message::Text(entry.as_ref().into()),
                 Err(RecvError::Lagged(_)) => continue,
@@ -85,8 +106,13 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
 }
 
 /// The order in a message of somebody who may give one.
-fn order(text: &str, guard: &Guard, page: u64) -> Option<Order> {
-    let Request { token, order, key } = serde_json::from_str(text).ok()?;
+fn order(text: &str, guard: &Guard, page: u64) -> Option<Taken> {
+    let Request {
+        token,
+        order,
+        who,
+        key,
+    } = serde_json::from_str(text).ok()?;
     if !guard.knows(&token) {
         return None;
     }
@@ -97,14 +123,22 @@ fn order(text: &str, guard: &Guard, page: u64) -> Option<Order> {
         steps,
         by,
     };
-    Some(match order {
+    Some(Taken::Sequence(match order {
+        Wanted::Commissioning(order) => {
+            return Some(Taken::Commissioning(Ordered {
+                order,
+                who,
+                page,
+                key: by.key,
+            }));
+        }
         Wanted::Run { name, text } => run(name, text, false, by),
         Wanted::First { name, text } => run(name, text, true, by),
         Wanted::Step => Order::Step { by },
         Wanted::Pause => Order::Pause,
         Wanted::Continue => Order::Continue { by },
         Wanted::Stop => Order::Stop,
-    })
+    }))
 }
 
 #[cfg(test)]
@@ -120,16 +154,28 @@ mod tests {
             page: 3,
             key: "a".to_owned(),
         };
-        assert_eq!(order(&step, &guard, 3), Some(Order::Step { by }));
+        assert_eq!(
+            order(&step, &guard, 3),
+            Some(Taken::Sequence(Order::Step { by }))
+        );
         let run = format!(r#"{{"token":"{token}","order":{{"run":{{"name":"a","text":"FRF"}}}}}}"#);
         assert!(matches!(
             order(&run, &guard, 3),
-            Some(Order::Run {
+            Some(Taken::Sequence(Order::Run {
                 steps: false,
                 by: Orderer { page: 3, .. },
                 ..
-            })
+            }))
         ));
+        let only = format!(
+            r#"{{"token":"{token}","order":{{"commissioning":{{"only":{{"step":"friction"}}}}}},"who":"Ada"}}"#
+        );
+        let Some(Taken::Commissioning(only)) = order(&only, &guard, 3) else {
+            panic!("no order");
+        };
+        let step = "friction".to_owned();
+        assert_eq!(only.order, commissioning::Order::Only { step });
+        assert_eq!((only.who.as_str(), only.page), ("Ada", 3));
         for bad in [
             r#"{"token":"x","order":"step"}"#,
             r#"{"order":"step"}"#,

@@ -161,7 +161,7 @@ fn commissioned(stage: &StageParameters, settings: &Path, seed: u64) -> Result<b
     }
     let mut machine = SimulatedMachine::new(stage, SettingsFlash::open(settings)?);
     let mut written = Ok(ExitCode::SUCCESS);
-    let all = run_steps(&mut machine, &Chosen::all(), &mut |done| {
+    let ran = run_steps(&mut machine, &Chosen::all(), &mut |done| {
         let verdict = done
             .failure
             .as_ref()
@@ -172,7 +172,7 @@ fn commissioned(stage: &StageParameters, settings: &Path, seed: u64) -> Result<b
         }
     })?;
     written?;
-    Ok(all.iter().all(|done| done.failure.is_none()))
+    Ok(ran.done.iter().all(|done| done.failure.is_none()))
 }
 
 /// True poses where the controller was sent to, all over the disk.

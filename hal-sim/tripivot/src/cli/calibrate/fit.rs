@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use calibration::file::{Calibration, Made};
 use calibration::table::Table;
 use calibration::{Accuracy, Drift, Fit, FitError, Instrument, fit, left};
+use desk::date::today;
 use drawing::write_file;
-use hal_sim::date::today;
 use kinematics::Geometry;
 use serde::Serialize;
 

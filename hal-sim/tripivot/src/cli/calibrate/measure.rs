@@ -11,7 +11,7 @@ use calibration::table::{Table, note, to_text};
 use calibration::{Instrument, Kit, plan};
 use desk::calibrate::{MeasureError, Measured, Reader, Way, measure, serial, with_references};
 use desk::commission::{Attended, Machine};
-use hal_sim::date::today;
+use desk::date::today;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::instruments::Beside;
 use kinematics::Geometry;

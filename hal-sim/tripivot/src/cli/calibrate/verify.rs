@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use calibration::{Instrument, Noise};
 use desk::calibrate::{Told, Verdict, verify};
-use hal_sim::date::age_days;
+use desk::date::age_days;
 
 use super::super::FAILED;
 use super::super::arguments::CalibrateVerify;

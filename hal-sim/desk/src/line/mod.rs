@@ -1,13 +1,16 @@
-//! Questions and answers over a GCS connection.
+//! Questions and answers over a GCS connection, be it TCP or a serial line (`port`).
 //!
 //! A line that is refused may answer or not, so that an answer cannot be told from what follows it. After a line of a
 //! viewer come `ERR?` and `*IDN?`, whose answer is known: what came before it is the error, and before that the answer.
 //! Another `ERR?` goes before the line, so that the error of a stop or a fault is not taken for the line's own.
 
+mod port;
+
 use std::io::{self, Write};
 use std::time::{Duration, Instant};
 
-use super::port::{Endpoint, Port};
+pub use port::Endpoint;
+pub(crate) use port::Port;
 
 /// How long the controller may be silent in the middle of an answer, at first.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -73,7 +76,7 @@ impl Line {
 
     /// Whether a second connection is answered beside the first. Behind a TCP port may lie one serial line, whose next client waits
     /// until the first is gone.
-    pub(super) fn has_another(endpoint: &Endpoint) -> bool {
+    pub(crate) fn has_another(endpoint: &Endpoint) -> bool {
         let Ok(mut port) = endpoint.open() else {
             return false;
         };
@@ -102,12 +105,12 @@ impl Line {
     }
 
     /// The same connection, to be written to past what is under way: single bytes may stand anywhere.
-    pub(super) fn bypass(&self) -> io::Result<Port> {
+    pub(crate) fn bypass(&self) -> io::Result<Port> {
         self.port.try_clone()
     }
 
     /// How long the controller may be silent in the middle of an answer from now on.
-    pub(super) const fn set_patience(&mut self, patience: Duration) {
+    pub(crate) const fn set_patience(&mut self, patience: Duration) {
         self.patience = patience;
     }
 
@@ -125,12 +128,12 @@ impl Line {
     }
 
     /// Sends such a line; [`Line::take_answer`] follows.
-    pub(super) fn send(&mut self, line: &str) -> io::Result<()> {
+    pub(crate) fn send(&mut self, line: &str) -> io::Result<()> {
         (self.port).write_all(format!("ERR?\n{line}\nERR?\n*IDN?\n").as_bytes())
     }
 
     /// What became of the line that was sent last.
-    pub(super) fn take_answer(&mut self) -> io::Result<Answer> {
+    pub(crate) fn take_answer(&mut self) -> io::Result<Answer> {
         self.answer()?;
         let mut answers = Vec::new();
         while answers.len() < 2 || answers.last() != Some(&self.identity) {

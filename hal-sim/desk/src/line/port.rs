@@ -38,12 +38,12 @@ impl fmt::Display for Endpoint {
 
 impl Endpoint {
     /// Whether everybody there may have a connection of his own.
-    pub(super) const fn is_tcp(&self) -> bool {
+    pub(crate) const fn is_tcp(&self) -> bool {
         matches!(self, Self::Tcp(_))
     }
 
     /// Opens it.
-    pub(super) fn open(&self) -> io::Result<Port> {
+    pub(crate) fn open(&self) -> io::Result<Port> {
         match self {
             Self::Tcp(address) => {
                 let stream = TcpStream::connect(address)?;
@@ -65,7 +65,7 @@ impl Endpoint {
 }
 
 /// An open way.
-pub(super) enum Port {
+pub(crate) enum Port {
     Tcp(TcpStream),
     Serial(Box<dyn SerialPort>),
 }

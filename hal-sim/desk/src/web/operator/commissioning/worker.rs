@@ -1,0 +1,275 @@
+//! The thread that runs the steps, and tries gains.
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use tokio::runtime::Handle;
+use tokio::time::timeout;
+
+use super::control::Control;
+use super::files::{FOLDER, Files};
+use super::machine::PageMachine;
+use super::status::{Told, Tried, Tuning, places};
+use super::{Order, Ordered, Person};
+use crate::commission::{
+    Backup, Chosen, Conditions, Done, Machine, Numbers, Ran, Results, Tunable, page, run,
+};
+use crate::date::today;
+use crate::record::RecordError;
+use crate::web::bridge::{Bridge, Way};
+use crate::web::operator::journal::Journal;
+
+/// How long a page may be busy with a line of its own when it is asked whether it owns the stage.
+const OWNER_PATIENCE: Duration = Duration::from_millis(500);
+const REPORT: &str = "report.html";
+const BEFORE: &str = "before.txt";
+/// Whether any step of a run keeps what it finds.
+const KEEPS: bool = true;
+
+/// See the module.
+pub(super) struct Worker {
+    pub control: Arc<Control>,
+    pub told: Arc<Told>,
+    pub files: Files,
+    pub bridge: Bridge,
+    pub journal: Journal,
+    pub person: Option<Person>,
+    pub runtime: Handle,
+    /// The loops that were measured last.
+    pub tunable: Option<Tunable>,
+    /// What was in force before the last commissioning.
+    pub before: Option<Backup>,
+    /// What the last one found.
+    pub earlier: Option<Results>,
+}
+
+/// What an order came to, in words, or why it came to nothing.
+type Came = Result<String, String>;
+
+impl Worker {
+    /// Until the server ends.
+    pub fn run(mut self, orders: &Receiver<Ordered>) {
+        for ordered in orders {
+            let what = what(&ordered.order);
+            let came = self.carry_out(&ordered, what);
+            let (good, said) = match came {
+                Ok(said) => (true, said),
+                Err(said) => (false, said),
+            };
+            self.journal.note(&ordered.who, &format!("{what}…"), &said);
+            self.told.ends(good, said);
+            self.files.keep_plots(&self.told.plots());
+            self.control.over();
+        }
+    }
+
+    fn carry_out(&mut self, Ordered { order, key, .. }: &Ordered, what: &'static str) -> Came {
+        let chosen = match order {
+            Order::Commission { from: Some(from) } => Chosen::from(from),
+            Order::Commission { from: None } => Ok(Chosen::all()),
+            Order::Only { step } => Chosen::only(step),
+            Order::Tune => Ok(Chosen::tune()),
+            Order::Measure => {
+                self.told.begins(what, Some(Chosen::response().steps()));
+                return self.steps(key, &Chosen::response(), !KEEPS);
+            }
+            other => {
+                self.told.begins(what, None);
+                return self.by_hand(key, other);
+            }
+        };
+        let chosen = chosen.map_err(|error| error.to_string())?;
+        self.told.begins(what, Some(chosen.steps()));
+        self.steps(key, &chosen, KEEPS)
+    }
+
+    /// Runs steps.
+    fn steps(&mut self, key: &str, chosen: &Chosen, keeps: bool) -> Came {
+        let mut machine = self.machine(key)?;
+        let ran = self.over_steps(&mut machine, chosen, keeps);
+        let ran = ran.map_err(|error| ended(&mut machine, error));
+        machine.leave();
+        let (conditions, Ran { done, tunable }) = ran?;
+        let changes = self.changes(&conditions, &done, keeps);
+        self.files
+            .put(REPORT, &page(&conditions, &done, changes.as_deref()));
+        for table in done.iter().flat_map(|done| &done.found.tables) {
+            self.files.put(&format!("{}.csv", table.name), &table.csv);
+        }
+        let plots = (done.iter().rev())
+            .find(|done| !done.found.tables.is_empty())
+            .map(|done| places(&done.found.plots, &self.files));
+        self.told.change(|status| {
+            status.report = Some(format!("{FOLDER}{REPORT}"));
+            status.tables = self.files.tables();
+            if let Some(tunable) = &tunable {
+                status.tuning = Some(Tuning::new(
+                    tunable.numbers(),
+                    tunable.measured(),
+                    plots.unwrap_or_default(),
+                ));
+            }
+        });
+        self.tunable = tunable.or(self.tunable.take());
+        let seconds: f64 = done.iter().map(|done| done.seconds).sum();
+        match done
+            .iter()
+            .find_map(|done| Some((done.step.name, done.failure.as_ref()?)))
+        {
+            Some((step, failure)) => Err(format!("step {step} has failed: {}", failure.what)),
+            None if keeps => Ok(format!(
+                "done and kept, {seconds:.0} s of the machine's time"
+            )),
+            None => Ok(format!(
+                "measured in {seconds:.0} s of the machine's time; everything is as it was, the servo is off"
+            )),
+        }
+    }
+
+    fn over_steps(
+        &mut self,
+        machine: &mut PageMachine,
+        chosen: &Chosen,
+        keeps: bool,
+    ) -> Result<(Conditions, Ran), RecordError> {
+        machine.take_over()?;
+        let identity = machine.ask("*IDN?")?.unwrap_or_default();
+        let conditions = Conditions {
+            machine: "machine".to_owned(),
+            identity,
+            date: today(),
+            temperature_c: None,
+        };
+        if keeps {
+            let before = Backup::of(machine)?;
+            self.files.put(BEFORE, &before.to_string());
+            self.before = Some(before);
+            let path = format!("{FOLDER}{BEFORE}");
+            self.told.change(|status| status.before = Some(path));
+        }
+        let ran = run(machine, chosen, &mut |done| {
+            self.told.step(done, &self.files)
+        })?;
+        Ok((conditions, ran))
+    }
+
+    /// What has changed since the last time, where there was one; and what is compared next time.
+    fn changes(
+        &mut self,
+        conditions: &Conditions,
+        done: &[Done],
+        keeps: bool,
+    ) -> Option<Vec<crate::commission::Change>> {
+        if !keeps || done.iter().any(|done| done.failure.is_some()) {
+            return None;
+        }
+        let results = Results::new(conditions.clone(), done);
+        let changes = (self.earlier.as_ref()).map(|earlier| results.changes(earlier));
+        self.earlier = Some(results);
+        changes
+    }
+
+    /// What takes no steps.
+    fn by_hand(&mut self, key: &str, order: &Order) -> Came {
+        match order {
+            Order::Predict { gains } => self.predict(gains),
+            Order::Put { gains } => {
+                let tunable = self.tunable.clone().ok_or("measure the loops first")?;
+                let mut machine = self.machine(key)?;
+                (tunable.put_in_force(&mut machine, gains)).map_err(|error| error.to_string())?;
+                Ok("in force, and not kept: measure the loops again".to_owned())
+            }
+            Order::Keep => {
+                let mut machine = self.machine(key)?;
+                machine.ask("CCL 1 ADVANCED").map_err(said)?;
+                machine.ask("WPA 100").map_err(said)?;
+                Ok("what is in force is kept".to_owned())
+            }
+            Order::Undo => {
+                let before = self
+                    .before
+                    .clone()
+                    .ok_or("nothing was commissioned from here")?;
+                let mut machine = self.machine(key)?;
+                let changed = before.give_back(&mut machine);
+                let changed = changed.map_err(|error| error.to_string())?;
+                Ok(format!(
+                    "{} parameters and {} macros are what they were before, and kept",
+                    changed.parameters, changed.macros
+                ))
+            }
+            _ => Ok(String::new()),
+        }
+    }
+
+    fn predict(&self, gains: &Numbers) -> Came {
+        let tunable = self.tunable.as_ref().ok_or("measure the loops first")?;
+        let predicted = tunable.predict(gains).map_err(|error| error.to_string())?;
+        let tried = Tried {
+            gains: *gains,
+            is_stable: predicted.is_stable,
+            loops: predicted.loops,
+            plots: places(&predicted.plots, &self.files),
+        };
+        self.told.change(|status| {
+            if let Some(tuning) = &mut status.tuning {
+                tuning.tried = Some(tried);
+            }
+        });
+        Ok("computed from the loops that were measured; nothing is changed".to_owned())
+    }
+
+    /// The machine over the way with this key if that one owns the stage, and else over one of its own.
+    fn machine(&self, key: &str) -> Result<PageMachine, String> {
+        let own =
+            (self.bridge.way()).map_err(|error| format!("no way to the controller: {error}"))?;
+        let owners = self.bridge.way_of(key).upgrade();
+        let owners = owners.filter(|way| self.owns(way));
+        Ok(PageMachine {
+            own,
+            owners,
+            runtime: self.runtime.clone(),
+            control: Arc::clone(&self.control),
+            told: Arc::clone(&self.told),
+            person: self.person.clone(),
+            place: self.bridge.place(),
+            is_ended: false,
+            period_s: None,
+        })
+    }
+
+    fn owns(&self, way: &Way) -> bool {
+        let owns = async { timeout(OWNER_PATIENCE, way.owns()).await.unwrap_or(false) };
+        self.runtime.block_on(owns)
+    }
+}
+
+fn said(error: RecordError) -> String {
+    error.to_string()
+}
+
+/// Why a run has ended early, and what is known of the stage then.
+fn ended(machine: &mut PageMachine, error: RecordError) -> String {
+    let servo = machine.ask("SVO? X").ok().flatten().unwrap_or_default();
+    let motors = match servo.trim() {
+        "X=0" => "the motors are off",
+        _ => "whether the motors are off is not known",
+    };
+    format!("{error}; {motors}, and nothing was kept")
+}
+
+/// What an order is called.
+const fn what(order: &Order) -> &'static str {
+    match order {
+        Order::Commission { .. } => "commissioning",
+        Order::Only { .. } => "one step of commissioning",
+        Order::Tune => "tuning for another payload",
+        Order::Measure => "measuring the loops",
+        Order::Predict { .. } => "gains on the loops as measured",
+        Order::Put { .. } => "gains put in force",
+        Order::Keep => "keeping what is in force",
+        Order::Undo => "giving back what was before",
+        Order::Done | Order::End => "",
+    }
+}
