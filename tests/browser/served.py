@@ -47,8 +47,8 @@ class Process:
 class Served(Process):
     """A simulated stage whose settings are the reference's, its GCS port and its page."""
 
-    def __init__(self, program, gcs="127.0.0.1:0", page="127.0.0.1:0"):
-        super().__init__(program, "serve", "--kind", "--listen", gcs, "--web", page)
+    def __init__(self, program, gcs="127.0.0.1:0", page="127.0.0.1:0", stage=("--kind",)):
+        super().__init__(program, "serve", *stage, "--listen", gcs, "--web", page)
         self.gcs = self.said(r"listening at (\S+)")
         if page == "off":
             return

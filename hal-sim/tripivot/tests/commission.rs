@@ -1,11 +1,12 @@
 //! `tripivot commission` on machines as workshops build them: those that are sound are brought up, the others refused where it shows.
 
-use desk::commission::{Backup, Chosen, Machine, run};
+use desk::commission::{Backup, Chosen, GainsError, Machine, PutError, run};
 use firmware::control::servo::BorneLimits;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
+use hal_sim::rig::run::{RunOptions, machine_settings, stage_parameters};
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
@@ -102,8 +103,8 @@ fn brings_up(seed: u64) -> PathBuf {
     assert!(folder.join("settings.flash").exists());
     let report = std::fs::read_to_string(folder.join("report.html")).expect("a report");
     assert!(report.contains(">commissioned<") && report.contains("</html>"));
-    // Bode and Nyquist plots, in the middle and far out, before and after.
-    assert_eq!(report.matches("<figure><svg").count(), 4);
+    // The plugs; Bode and Nyquist plots, in the middle and far out, and a step, before and after.
+    assert_eq!(report.matches("<figure><svg").count(), 7);
     its_settings_run_the_machine(seed, &folder);
     one_step_is_run_again(&machine, seed, &folder);
     what_was_before_is_given_back(&machine, seed, &folder);
@@ -554,4 +555,63 @@ fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
     let failure = ran.done[0].failure.as_ref().expect("a failure");
     println!("{failure:?}");
     assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
+}
+
+/// The worst of what gains that are in force make of the plants that were measured with them, beside the loops as measured, and a tenth more.
+const MOST_MS_OFF: f64 = 0.096;
+
+#[test]
+fn loops_are_measured_with_the_gains_in_force_and_others_are_judged_before_they_are() {
+    let options = RunOptions::reference();
+    let flash = machine_settings(&options, SettingsFlash::in_memory());
+    let mut machine = SimulatedMachine::new(&stage_parameters(&options), flash);
+    let gain =
+        |machine: &mut SimulatedMachine| machine.ask("SPA? 1 0x54500311").expect("it answers");
+    machine.ask("CCL 1 ADVANCED").expect("it is taken");
+    let kept = gain(&mut machine);
+    // In force and not kept: that is what is measured, and what is there afterwards.
+    machine.ask("SPA 1 0x54500311 30").expect("it is taken");
+    let ran = run(&mut machine, &Chosen::response(), &mut |_| ()).expect("it answers");
+    for done in &ran.done {
+        assert_eq!(done.failure, None);
+    }
+    assert_eq!(gain(&mut machine), Some("1 0x54500311=30".to_owned()));
+    assert_ne!(kept, gain(&mut machine));
+    let tunable = ran.tunable.expect("loops");
+    let in_force = tunable.numbers();
+    assert!((in_force[0][1] - 30.0).abs() < 1e-9);
+    let same = tunable.predict(&in_force).expect("gains");
+    assert!(same.is_stable);
+    for (predicted, measured) in same.loops.iter().zip(tunable.measured()) {
+        let off = predicted.ms / measured.ms - 1.0;
+        println!("{}: Ms {:.3}, off {off:.3}", measured.place, measured.ms);
+        assert!(off.abs() < MOST_MS_OFF);
+    }
+    // Slower ones reject less; ten times as fast ones are not put in force, and none is no number.
+    let scaled = |by: f64| {
+        in_force.map(|mut all| {
+            all[1] *= by;
+            all
+        })
+    };
+    let slower = tunable.predict(&scaled(0.7)).expect("gains");
+    for (slower, measured) in slower.loops.iter().zip(tunable.measured()) {
+        assert!(
+            slower.rejection > 1.2 * measured.rejection,
+            "{slower:?}, {measured:?}"
+        );
+    }
+    let wild = scaled(10.0);
+    assert!(!tunable.predict(&wild).expect("gains").is_stable);
+    let refused = tunable.put_in_force(&mut machine, &wild).err();
+    assert!(matches!(
+        refused,
+        Some(PutError::Gains(GainsError::Unstable))
+    ));
+    assert_eq!(tunable.predict(&scaled(f64::NAN)), Err(GainsError::NoGain));
+    assert_eq!(gain(&mut machine), Some("1 0x54500311=30".to_owned()));
+    tunable
+        .put_in_force(&mut machine, &scaled(0.9))
+        .expect("it is taken");
+    assert_eq!(gain(&mut machine), Some("1 0x54500311=27".to_owned()));
 }

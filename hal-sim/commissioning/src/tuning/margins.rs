@@ -127,38 +127,45 @@ pub const REJECTION_HZ: f64 = 30.0;
 /// Resonances are sought from so many crossovers on.
 pub const BEYOND: f64 = 1.5;
 
-/// The sensitivity at each frequency.
+/// What becomes of a voltage that is added to the servos', at each frequency: `1 / (1 + C P)`, what [`crate::closed_loop`] measures. With servos
+/// that are not the same it is not that of an angle, `1 / (1 + P C)`, which margins are of.
 #[must_use]
 pub fn sensitivity(plant: &Plant, gains: &Gains, tick_s: f64) -> Vec<Matrix3<Complex<f64>>> {
     let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
-    loops(plant, gains, tick_s)
-        .map(|l| (Matrix3::identity() + l).try_inverse().unwrap_or(nothing))
+    (plant.response.iter().zip(servos(plant, gains, tick_s)))
+        .map(|(response, servos)| {
+            let l = Matrix3::from_diagonal(&servos.into()) * response;
+            (Matrix3::identity() + l).try_inverse().unwrap_or(nothing)
+        })
         .collect()
 }
 
-fn loops<'a>(
+/// Volts for each rad of the three servos at each frequency.
+fn servos<'a>(
     plant: &'a Plant,
     gains: &'a Gains,
     tick_s: f64,
-) -> impl Iterator<Item = Matrix3<Complex<f64>>> + 'a {
+) -> impl Iterator<Item = [Complex<f64>; 3]> + 'a {
     let shares = plant
         .inertia
         .map(|inertia| match gains.scheduled_inertia_kg_m2 {
             scheduled if scheduled > 0.0 => inertia / scheduled,
             _ => 1.0,
         });
-    plant
-        .hz
-        .iter()
-        .zip(&plant.response)
-        .map(move |(&hz, response)| {
-            let at = At::new(hz, tick_s);
-            let mut l = *response;
-            for ((mut column, pivot), share) in l.column_iter_mut().zip(&gains.pivots).zip(shares) {
-                column *= pivot.response_at(&at) * share;
-            }
-            l
-        })
+    plant.hz.iter().map(move |&hz| {
+        let at = At::new(hz, tick_s);
+        [0, 1, 2].map(|i| gains.pivots[i].response_at(&at) * shares[i])
+    })
+}
+
+/// The loops `P C` at each frequency.
+fn loops<'a>(
+    plant: &'a Plant,
+    gains: &'a Gains,
+    tick_s: f64,
+) -> impl Iterator<Item = Matrix3<Complex<f64>>> + 'a {
+    (plant.response.iter().zip(servos(plant, gains, tick_s)))
+        .map(|(response, servos)| response * Matrix3::from_diagonal(&servos.into()))
 }
 
 /// The margins of a loop at one place.

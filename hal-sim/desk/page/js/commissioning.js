@@ -30,22 +30,32 @@ export class Commissioning {
 
   constructor(operator, firstMove) {
     Object.assign(this, { operator, firstMove });
-    for (const name of ["start", "from", "only", "tune", "undo", "end", "task", "words", "waits", "done", "said", "files", "steps"]) this[name] = byId(`commission-${name}`);
-    this.start.addEventListener("click", () => this.#give({ commission: { from: this.from.selectedIndex > 0 ? this.from.value : null } }));
-    this.only.addEventListener("click", () => this.#give({ only: { step: this.from.value } }));
-    this.tune.addEventListener("click", () => this.#give("tune"));
-    this.undo.addEventListener("click", () => this.#give("undo"));
-    this.end.addEventListener("click", () => this.#give("end"));
-    this.done.addEventListener("click", () => this.#give("done"));
+    for (const name of ["start", "from", "periods", "only", "tune", "undo", "end", "task", "words", "waits", "done", "said", "files", "steps"]) this[name] = byId(`commission-${name}`);
+    const from = () => (this.from.selectedIndex > 0 ? this.from.value : null);
+    this.start.addEventListener("click", () => this.#give(() => ({ commission: { from: from(), scale_periods: this.#periods() } })));
+    this.only.addEventListener("click", () => this.#give(() => ({ only: { step: this.from.value, scale_periods: this.#periods() } })));
+    for (const order of ["tune", "undo", "end", "done"]) this[order].addEventListener("click", () => this.#give(() => order));
+    byId("commission-open").addEventListener("click", () => {
+      byId("commissioning").open = true;
+      byId("commissioning").scrollIntoView();
+    });
     operator.addEventListener("commissioning", ({ detail }) => this.#show(detail));
   }
 
+  /** Periods of the encoders' scale, where somebody has said them. */
+  #periods() {
+    const text = this.periods.value.trim();
+    if (text && !/^[1-9]\d{0,6}$/.test(text)) throw new Error(`scale periods are a whole number, not ${text}`);
+    return text ? Number(text) : null;
+  }
+
   async #give(order) {
-    await report(this.said, async () => {
-      if (order !== "end" && order !== "done") await this.firstMove.agree();
-      await this.operator.order({ commissioning: order });
+    const taken = await report(this.said, async () => {
+      const wanted = order();
+      if (wanted !== "end" && wanted !== "done") await this.firstMove.agree();
+      await this.operator.order({ commissioning: wanted });
     });
-    this.#say(this.#status);
+    if (taken) this.#say(this.#status);
   }
 
   #say(status) {

@@ -43,17 +43,20 @@ function showMachine({ connected, simulated, identity, place }) {
 }
 
 function showFault(stage) {
-  const reason = stage.fault ? `Fault: ${stage.fault}` : stage.notCommissioned && `This machine is ${stage.notCommissioned}.`;
+  const reason = stage.fault ? `Fault: ${stage.fault}` : stage.notCommissioned && "This machine is not commissioned: nothing drives before it is.";
   const text = stage.connected ? reason : "";
   byId("alarm").hidden = !text;
   if (text) setText(byId("alarm-text"), text);
   byId("acknowledge").hidden = stage.mode !== "fault";
+  byId("commission-open").hidden = Boolean(stage.fault) || !stage.notCommissioned;
 }
 
 /** What stays until somebody changes it. */
-function showNotices({ notices }) {
-  byId("notices").hidden = notices.length === 0;
-  setText(byId("notices"), notices.join("; "));
+function showNotices({ notices, notCommissioned }) {
+  // That one is an alarm already.
+  const others = notices.filter((notice) => notice !== notCommissioned);
+  byId("notices").hidden = others.length === 0;
+  setText(byId("notices"), others.join("; "));
 }
 
 function showPose({ measured, target, referenced }) {

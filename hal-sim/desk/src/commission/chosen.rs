@@ -123,7 +123,8 @@ impl Chosen {
     }
 
     /// Whether what the steps find stays in force.
-    pub(super) fn keeps(&self) -> bool {
+    #[must_use]
+    pub fn keeps(&self) -> bool {
         self.steps.last().is_some_and(|step| step.name == LAST)
     }
 
@@ -142,7 +143,10 @@ impl Chosen {
                 "begin with the first step",
             );
         }
-        let known = Known::of_controller(bench)?;
+        let known = Known {
+            is_loaded_anew: self.is_loaded_anew,
+            ..Known::of_controller(bench)?
+        };
         if self.is_loaded_anew {
             let gains = servo_gains::read(bench)?.slowed(OTHER_LOAD);
             servo_gains::write(bench, &gains)?;

@@ -26,6 +26,8 @@ pub(super) struct Known {
     pub windings: [[f64; 2]; AXES],
     /// Back-EMF of the pivots' motors for each rad/s of their rings, V s/rad.
     pub motor_constants: [f64; AXES],
+    /// Whether drives are known from before, and only the load is another.
+    pub is_loaded_anew: bool,
     /// Drives, rings and platform.
     pub model: Option<DriveModel>,
     /// What was recorded in the middle for it.

@@ -129,8 +129,7 @@ impl MeasuredLoop {
         Some(Self { spot, lines })
     }
 
-    /// How far the sensitivity is from what gains make of the plant that was measured with it, over its size: the median of the lines. Gains are
-    /// those of a servo that is the same for all pivots.
+    /// How far the sensitivity is from what gains make of the plant that was measured with it, over its size: the median of the lines.
     pub fn distance(&self, gains: &Gains, chain: &Chain, radius_m: f64) -> Option<f64> {
         let said = self.with(gains, chain, radius_m)?;
         let mut off: Vec<f64> = (self.lines.iter().zip(said.lines))
@@ -170,7 +169,7 @@ pub fn plot(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> Plot {
             now.spot.words(),
             read_so()
         ),
-        svg: draw(now, before),
+        svg: draw(now, before, ["now", "before"]),
     }
 }
 
@@ -182,7 +181,11 @@ pub fn plot_predicted(predicted: &MeasuredLoop, measured: &MeasuredLoop) -> Plot
             predicted.spot.words(),
             read_so()
         ),
-        svg: draw(predicted, Some(measured)),
+        svg: draw(
+            predicted,
+            Some(measured),
+            ["with these gains", "as measured"],
+        ),
     }
 }
 
@@ -193,7 +196,8 @@ fn read_so() -> String {
     )
 }
 
-fn draw(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> String {
+/// The four plots; names of the two in the legend.
+fn draw(now: &MeasuredLoop, before: Option<&MeasuredLoop>, names: [&'static str; 2]) -> String {
     let mut svg = Svg::new(SHEET[0], SHEET[1]);
     let frame = |left: f64, top: f64, width: f64, height: f64| Rect {
         left,
@@ -201,7 +205,12 @@ fn draw(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> String {
         width,
         height,
     };
-    draw_sensitivity(&mut svg, &frame(60.0, 50.0, 420.0, 285.0), now, before);
+    draw_sensitivity(
+        &mut svg,
+        &frame(60.0, 50.0, 420.0, 285.0),
+        [Some(now), before],
+        names,
+    );
     draw_gain(&mut svg, &frame(60.0, 440.0, 420.0, 300.0), now, before);
     draw_phase(&mut svg, &frame(545.0, 580.0, 420.0, 160.0), now, before);
     draw_nyquist(&mut svg, &frame(545.0, 50.0, 420.0, 420.0), now, before);
@@ -232,22 +241,22 @@ fn curves<'a>(
 fn draw_sensitivity(
     svg: &mut Svg,
     frame: &Rect,
-    now: &MeasuredLoop,
-    before: Option<&MeasuredLoop>,
+    loops: [Option<&MeasuredLoop>; 2],
+    names: [&'static str; 2],
 ) {
-    let curve = |measured: &MeasuredLoop, dashed: bool| Curve {
-        name: if dashed { "before" } else { "now" },
-        colour: colour::ACT,
-        dashed,
-        points: (measured.lines.iter())
-            .map(|line| [line.hz, worst_direction(&line.sensitivity)])
-            .collect(),
-    };
-    let mut all: Vec<_> = before
-        .map(|before| curve(before, true))
-        .into_iter()
+    // The later one lies over the one before.
+    let all: Vec<_> = (loops.into_iter().zip(names).zip([false, true]).rev())
+        .filter_map(|((measured, name), dashed)| {
+            Some(Curve {
+                name,
+                colour: colour::ACT,
+                dashed,
+                points: (measured?.lines.iter())
+                    .map(|line| [line.hz, worst_direction(&line.sensitivity)])
+                    .collect(),
+            })
+        })
         .collect();
-    all.push(curve(now, false));
     let plane = Plane {
         title: "sensitivity S, largest singular value",
         x: HZ,

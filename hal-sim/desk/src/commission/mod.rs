@@ -48,6 +48,7 @@ use crate::record::{Desk, RecordError};
 use crate::settings::bring_back;
 pub(crate) use bench::Bench;
 use known::Known;
+use std::time::Duration;
 
 /// A machine with its controller, and somebody beside it.
 pub trait Machine {
@@ -190,7 +191,15 @@ pub fn run(
         if !failed {
             bench.give_up()?;
         }
-        bring_back(&mut |line| bench.answer(line), &in_force)?;
+        let brought = bring_back(&mut |line| bench.answer(line), &in_force);
+        if let Err(error @ RecordError::Refused { .. }) = brought {
+            failed = true;
+            if let Some(last) = all.last_mut() {
+                not_as_before(last, &error);
+            }
+        } else {
+            brought?;
+        }
     }
     let tunable = match failed {
         true => None,
@@ -210,28 +219,47 @@ fn given_up(bench: &mut Bench<'_>, mut failure: Failure) -> Result<Failure, Reco
     Ok(failure)
 }
 
-/// A controller that runs, with somebody who reads standard error and presses Enter.
+/// What was in force before a run that keeps nothing is not again.
+fn not_as_before(last: &mut Done, error: &RecordError) {
+    let what = format!("what was in force before is not in force again: {error}");
+    let failure = last.failure.get_or_insert_with(|| Failure {
+        what: String::new(),
+        advice: "RPA brings back what is kept; the rest has to be set again",
+    });
+    let and = if failure.what.is_empty() {
+        ""
+    } else {
+        "; and "
+    };
+    failure.what += &format!("{and}{what}");
+}
+
+/// Does what a person is asked for, or says that it is done.
+pub type DoTask = Box<dyn FnMut(Task) -> std::io::Result<()>>;
+
+/// A controller that runs, with somebody beside the machine.
 pub struct Attended {
     desk: Desk,
     scale_periods: Option<u32>,
-    wait_for_enter: fn() -> std::io::Result<()>,
-    tell: fn(&str),
+    do_task: DoTask,
 }
 
 impl Attended {
     /// # Errors
     /// When nobody answers there.
-    pub fn open(
-        endpoint: &Endpoint,
-        tell: fn(&str),
-        wait_for_enter: fn() -> std::io::Result<()>,
-    ) -> Result<Self, RecordError> {
+    pub fn open(endpoint: &Endpoint, do_task: DoTask) -> Result<Self, RecordError> {
         Ok(Self {
             desk: Desk::open(endpoint)?,
             scale_periods: None,
-            wait_for_enter,
-            tell,
+            do_task,
         })
+    }
+
+    /// The same with a controller that may be silent for so long: one that is emulated is slow.
+    #[must_use]
+    pub fn with_patience(mut self, patience: Duration) -> Self {
+        self.desk.set_patience(patience);
+        self
     }
 
     /// The same with the periods of the encoders' scale in a turn, where they are known.
@@ -252,15 +280,10 @@ impl Machine for Attended {
     }
 
     fn request(&mut self, task: Task) -> Result<(), RecordError> {
-        (self.tell)(task.words());
-        if task == Task::PutOnJig {
-            (self.tell)("Press Enter when that is done.");
-            (self.wait_for_enter)().map_err(|error| RecordError::Broken {
-                place: "the keyboard".to_owned(),
-                error,
-            })?;
-        }
-        Ok(())
+        (self.do_task)(task).map_err(|error| RecordError::Broken {
+            place: "the keyboard".to_owned(),
+            error,
+        })
     }
 
     fn scale_periods(&self) -> Option<u32> {

@@ -66,8 +66,11 @@ pub struct Excited {
 /// What is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recorded {
-    /// All that a model of the drives takes: volts, currents and angles, one pivot after the other.
-    Drives,
+    /// All that a model of the drives takes: volts, currents and angles, one pivot after the other; so many periods.
+    Drives {
+        /// Behind the one that is left out.
+        periods: usize,
+    },
     /// What the loop takes once the drives are known: currents and angles, of all pivots at once.
     Loop,
 }
@@ -76,7 +79,7 @@ impl Recorded {
     /// Rows at the beginning of a record that are left out: what a start excites dies in them.
     const fn left_out(self) -> usize {
         match self {
-            Self::Drives => PERIOD_ROWS,
+            Self::Drives { .. } => PERIOD_ROWS,
             // More there is no room for.
             Self::Loop => 800,
         }
@@ -85,7 +88,7 @@ impl Recorded {
     /// Rows of a record: behind what is left out, as many periods as there is room for.
     const fn rows(self) -> usize {
         let periods = match self {
-            Self::Drives => 3,
+            Self::Drives { periods } => periods,
             Self::Loop => 2,
         };
         self.left_out() + periods * PERIOD_ROWS
@@ -162,7 +165,7 @@ fn record(
         Recorded::Loop => at_spot(bench, spot, |bench| {
             bench.record_all(rows, TICKS_PER_ROW, line)
         })?,
-        Recorded::Drives => {
+        Recorded::Drives { .. } => {
             let mut pivots: [Signals; AXES] = Default::default();
             for (pivot, signals) in pivots.iter_mut().enumerate() {
                 *signals = at_spot(bench, spot, |bench| {

@@ -28,6 +28,11 @@ impl Desk {
         }
     }
 
+    /// How long the controller may be silent in the middle of an answer.
+    pub const fn set_patience(&mut self, patience: Duration) {
+        self.line.set_patience(patience);
+    }
+
     /// A line, and its answer if it has one.
     pub fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
         let answer = self.line.ask(line).map_err(|error| RecordError::Broken {

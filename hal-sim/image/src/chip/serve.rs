@@ -9,12 +9,15 @@ use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
 
 use super::run::machine_settings;
 use super::{Bench, ChipError, Period, elf_file};
+use desk::commission::Task;
 use desk::serve::{ProtocolCheck, keep_alive};
-use hal_sim::machine::devices::Stage;
+use hal_sim::machine::devices::{SettingsFlash, Stage};
 use hal_sim::rig::run::{RunOptions, stage_parameters};
+use tripivot::person::Person;
 
 /// Control periods between two looks at the client: half a millisecond of the chip's time.
 const LOOK_EVERY: u64 = 10;
@@ -27,6 +30,10 @@ const READ_BYTES: usize = 512;
 /// An address that is listened at, and a bench that does not run yet.
 pub struct LineServer {
     listener: TcpListener,
+    /// What the person beside the machine is asked for.
+    tasks: Option<Receiver<Task>>,
+    /// What its flash holds at the start, in place of what the machine's own would.
+    settings: Option<SettingsFlash>,
 }
 
 /// Something that happened at the line.
@@ -60,7 +67,29 @@ impl LineServer {
     pub fn bind(address: &str) -> io::Result<Self> {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
-        Ok(Self { listener })
+        Ok(Self {
+            listener,
+            tasks: None,
+            settings: None,
+        })
+    }
+
+    /// The same with a simulated person beside the machine, who does what is asked for.
+    #[must_use]
+    pub fn with_person(self, tasks: Receiver<Task>) -> Self {
+        Self {
+            tasks: Some(tasks),
+            ..self
+        }
+    }
+
+    /// The same on a board whose flash keeps these settings.
+    #[must_use]
+    pub fn with_settings(self, settings: SettingsFlash) -> Self {
+        Self {
+            settings: Some(settings),
+            ..self
+        }
     }
 
     /// Where it listens.
@@ -89,10 +118,13 @@ impl LineServer {
             client: None,
             check: ProtocolCheck::default(),
             replies: Vec::new(),
+            person: Person::default(),
+            tasks: self.tasks,
         };
+        let settings = (self.settings).unwrap_or_else(|| machine_settings(options));
         let outcome = Bench::load(&path, stage)
             .map_err(bench)?
-            .with_settings(machine_settings(options))
+            .with_settings(settings)
             .run(move |period| line.period(period, &stop, &say))
             .map_err(bench)?;
         if outcome.gaps.is_empty() {
@@ -110,6 +142,8 @@ struct Line {
     check: ProtocolCheck,
     /// Received from the chip, not written to the client yet.
     replies: Vec<u8>,
+    person: Person,
+    tasks: Option<Receiver<Task>>,
 }
 
 impl Line {
@@ -119,6 +153,10 @@ impl Line {
         stop: &AtomicBool,
         say: &impl Fn(&LineNotice),
     ) -> ControlFlow<()> {
+        if let Some(task) = self.tasks.as_ref().and_then(|tasks| tasks.try_recv().ok()) {
+            self.person.begin(task, period.stage);
+        }
+        self.person.tick(period.stage);
         if !period.tick.is_multiple_of(LOOK_EVERY) {
             return Continue(());
         }

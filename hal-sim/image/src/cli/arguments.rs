@@ -23,6 +23,10 @@ pub(super) enum Command {
     Chip(ChipRun),
     /// Let GCS clients drive the emulated chip over its serial line, one at a time, over TCP.
     ChipServe(ChipServe),
+    /// Commission an unknown machine whose controller is the emulated chip, over its serial line, with a simulated person beside it. What the
+    /// chip is told in the end goes into a file, since its emulated flash takes nothing; a second chip that keeps that moves the machine. Exit
+    /// code 1 if a step fails. Takes some minutes.
+    ChipCommission(ChipCommission),
     /// Count the instructions that parts of the library take on the emulated chip, over random states.
     Cost(CostRun),
     /// Let the control loop run on the emulated chip while the serial line is full, and tell when its ticks start.
@@ -72,6 +76,17 @@ pub(super) struct ChipServe {
     pub(super) allow_remote: bool,
     #[command(flatten)]
     pub(super) stage: SimulatedStage,
+}
+
+/// An unknown machine.
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipCommission {
+    /// Which.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(super) unknown: u64,
+    /// Folder for the report and the settings.
+    #[arg(long, value_name = "DIR", default_value = "tripivot-chip-commission")]
+    pub(super) out: PathBuf,
 }
 
 /// Where the repository keeps the figures, for a program that is run where it was built.

@@ -26,6 +26,10 @@ pub(super) enum CliError {
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),
     #[error(transparent)]
+    Record(#[from] desk::record::RecordError),
+    #[error(transparent)]
+    Settings(#[from] desk::settings::SettingsError),
+    #[error(transparent)]
     Chip(#[from] crate::chip::ChipError),
     #[error(transparent)]
     Cost(#[from] crate::cost::CostError),

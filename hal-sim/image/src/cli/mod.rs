@@ -4,6 +4,7 @@
 
 mod arguments;
 mod chip;
+mod chip_commission;
 mod chip_cycles;
 mod chip_load;
 mod chip_pins;
@@ -47,6 +48,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::Chip(chip) => chip::run(&chip),
         Command::ChipPins(arguments) => chip_pins::run(&arguments),
         Command::ChipServe(arguments) => chip_serve::run(&arguments),
+        Command::ChipCommission(arguments) => chip_commission::run(&arguments),
         Command::Cost(arguments) => cost::run(&arguments),
         Command::ChipLoad(arguments) => chip_load::run(&arguments),
         Command::ChipCycles(arguments) => chip_cycles::run(&arguments),

@@ -12,8 +12,8 @@ use super::error::CliError;
 use super::view::endpoint;
 use crate::attended::SimulatedMachine;
 use desk::commission::{
-    Attended, Backup, Change, Chosen, Conditions, Done, Machine, Results, STEPS, page,
-    run as run_steps,
+    Attended, Backup, Change, Chosen, Conditions, DoTask, Done, Machine, Results, STEPS, Task,
+    page, run as run_steps,
 };
 use desk::date;
 use drawing::ReportError;
@@ -128,14 +128,20 @@ fn open(on: &Commissioned, answer: fn() -> io::Result<()>) -> Result<Box<dyn Mac
         let flash = SettingsFlash::open(&on.out.join(SETTINGS))?;
         return Ok(Box::new(SimulatedMachine::new(&stage, flash)));
     }
-    Ok(Box::new(
-        Attended::open(
-            &endpoint(&on.controller)?,
-            |text| eprintln!("{text}"),
-            answer,
-        )?
-        .with_scale_periods(on.scale_periods),
-    ))
+    let machine = Attended::open(&endpoint(&on.controller)?, by_hand(answer))?;
+    Ok(Box::new(machine.with_scale_periods(on.scale_periods)))
+}
+
+/// Whoever reads standard error does it; `answer` is waited for where it has to be said that it is done.
+pub(super) fn by_hand(answer: fn() -> io::Result<()>) -> DoTask {
+    Box::new(move |task| {
+        eprintln!("{}", task.words());
+        if task == Task::PutOnJig {
+            eprintln!("Press Enter when that is done.");
+            answer()?;
+        }
+        Ok(())
+    })
 }
 
 fn conditions(on: &Commissioned, machine: &mut dyn Machine) -> Result<Conditions, CliError> {

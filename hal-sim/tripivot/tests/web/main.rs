@@ -8,10 +8,12 @@
 //! | `owners` | whose commands count, and what ends with a page |
 //! | `stops` | nothing that was asked for before a stop follows it |
 //! | `sequences` | scripts that run in the server |
+//! | `commissioning` | commissioning and tuning that run there |
 #![cfg(unix)]
 
 mod access;
 mod bench;
+mod commissioning;
 mod owners;
 mod sequences;
 mod stops;

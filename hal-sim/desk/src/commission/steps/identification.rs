@@ -11,8 +11,11 @@ use commissioning::drive_model::{DriveModel, Guess, Known as Before, Mechanical,
 use commissioning::frequency_response::Line;
 use commissioning::record::Timing;
 
-/// Sets of lines.
+/// Sets of lines, and periods of each; fewer where the drives are known and only the load is another.
 const SETS: u32 = 3;
+const PERIODS: usize = 3;
+const SETS_OF_LOAD: u32 = 2;
+const PERIODS_OF_LOAD: usize = 2;
 /// Lines that the model follows, Hz.
 const TO_HZ: f64 = 2_300.0;
 /// Least share of what an encoder shows that answers to its own drive, up to a frequency.
@@ -34,7 +37,12 @@ pub(super) fn run(
     found: &mut Found,
 ) -> Result<(), CommissionError> {
     allow(bench, PEAK_V)?;
-    let excited = excite(bench, &CENTRE, SETS, Recorded::Drives)?;
+    let (sets, periods) = if known.is_loaded_anew {
+        (SETS_OF_LOAD, PERIODS_OF_LOAD)
+    } else {
+        (SETS, PERIODS)
+    };
+    let excited = excite(bench, &CENTRE, sets, Recorded::Drives { periods })?;
     let quality = quality(&excited.lines);
     found.push(Finding::new(
         format!("share of the angles that answers to the drive, up to {QUALITY_TO_HZ:.0} Hz"),

@@ -39,14 +39,14 @@ enum Wanted {
     Pause,
     Continue,
     Stop,
-    Commissioning(commissioning::Order),
+    Commissioning(Box<commissioning::Order>),
 }
 
 /// What a page wants, and of whom.
 #[derive(Debug, PartialEq)]
 enum Taken {
     Sequence(Order),
-    Commissioning(Ordered),
+    Commissioning(Box<Ordered>),
 }
 
 /// Serves a page until it is gone.
@@ -80,7 +80,7 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
                 {
                     match order {
                         Taken::Sequence(order) => operator.sequence.order(order),
-                        Taken::Commissioning(ordered) => operator.commissioning.order(ordered),
+                        Taken::Commissioning(ordered) => operator.commissioning.order(*ordered),
                     }
                 }
                 continue;
@@ -125,12 +125,12 @@ fn order(text: &str, guard: &Guard, page: u64) -> Option<Taken> {
     };
     Some(Taken::Sequence(match order {
         Wanted::Commissioning(order) => {
-            return Some(Taken::Commissioning(Ordered {
-                order,
+            return Some(Taken::Commissioning(Box::new(Ordered {
+                order: *order,
                 who,
                 page,
                 key: by.key,
-            }));
+            })));
         }
         Wanted::Run { name, text } => run(name, text, false, by),
         Wanted::First { name, text } => run(name, text, true, by),
@@ -174,7 +174,12 @@ mod tests {
             panic!("no order");
         };
         let step = "friction".to_owned();
-        assert_eq!(only.order, commissioning::Order::Only { step });
+        let scale_periods = None;
+        let wanted = commissioning::Order::Only {
+            step,
+            scale_periods,
+        };
+        assert_eq!(only.order, wanted);
         assert_eq!((only.who.as_str(), only.page), ("Ada", 3));
         for bad in [
             r#"{"token":"x","order":"step"}"#,

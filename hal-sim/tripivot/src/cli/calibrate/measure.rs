@@ -17,7 +17,7 @@ use hal_sim::machine::instruments::Beside;
 use kinematics::Geometry;
 
 use super::super::arguments::{CalibrateMeasure, CalibratedMachine};
-use super::super::commission::wait_for_enter;
+use super::super::commission::{by_hand, wait_for_enter};
 use super::super::error::CliError;
 use super::super::view::endpoint;
 use super::error::CalibrateError;
@@ -79,8 +79,7 @@ pub(super) fn machine(stage: &CalibratedMachine) -> Result<Box<dyn Machine>, Cli
     }
     Ok(Box::new(Attended::open(
         &endpoint(&stage.controller)?,
-        |text| eprintln!("{text}"),
-        wait_for_enter,
+        by_hand(wait_for_enter),
     )?))
 }
 

@@ -40,6 +40,8 @@ pub(super) struct PageMachine {
     pub control: Arc<Control>,
     pub told: Arc<Told>,
     pub person: Option<Person>,
+    /// As whoever has begun it says.
+    pub scale_periods: Option<u32>,
     pub place: String,
     /// Whether it has been told to end: what follows brings the stage to rest.
     pub is_ended: bool,
@@ -174,5 +176,9 @@ impl Machine for PageMachine {
             }
         }
         Ok(())
+    }
+
+    fn scale_periods(&self) -> Option<u32> {
+        self.scale_periods
     }
 }

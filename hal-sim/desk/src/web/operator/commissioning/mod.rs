@@ -50,9 +50,16 @@ pub type Person = Arc<dyn Fn(Task) + Send + Sync>;
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub(in crate::web) enum Order {
     /// All steps, or those from one on.
-    Commission { from: Option<String> },
+    Commission {
+        from: Option<String>,
+        /// Periods of the encoders' scale in a turn, where they are known.
+        scale_periods: Option<u32>,
+    },
     /// One step, after a repair.
-    Only { step: String },
+    Only {
+        step: String,
+        scale_periods: Option<u32>,
+    },
     /// Another payload.
     Tune,
     /// The loops as they are; nothing is kept.

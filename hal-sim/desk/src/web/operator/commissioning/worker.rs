@@ -24,8 +24,6 @@ use crate::web::operator::journal::Journal;
 const OWNER_PATIENCE: Duration = Duration::from_millis(500);
 const REPORT: &str = "report.html";
 const BEFORE: &str = "before.txt";
-/// Whether any step of a run keeps what it finds.
-const KEEPS: bool = true;
 
 /// See the module.
 pub(super) struct Worker {
@@ -66,13 +64,15 @@ impl Worker {
 
     fn carry_out(&mut self, Ordered { order, key, .. }: &Ordered, what: &'static str) -> Came {
         let chosen = match order {
-            Order::Commission { from: Some(from) } => Chosen::from(from),
-            Order::Commission { from: None } => Ok(Chosen::all()),
-            Order::Only { step } => Chosen::only(step),
+            Order::Commission {
+                from: Some(from), ..
+            } => Chosen::from(from),
+            Order::Commission { from: None, .. } => Ok(Chosen::all()),
+            Order::Only { step, .. } => Chosen::only(step),
             Order::Tune => Ok(Chosen::tune()),
             Order::Measure => {
                 self.told.begins(what, Some(Chosen::response().steps()));
-                return self.steps(key, &Chosen::response(), !KEEPS);
+                return self.steps(key, &Chosen::response(), None);
             }
             other => {
                 self.told.begins(what, None);
@@ -81,13 +81,21 @@ impl Worker {
         };
         let chosen = chosen.map_err(|error| error.to_string())?;
         self.told.begins(what, Some(chosen.steps()));
-        self.steps(key, &chosen, KEEPS)
+        let scale_periods = match order {
+            Order::Commission { scale_periods, .. } | Order::Only { scale_periods, .. } => {
+                *scale_periods
+            }
+            _ => None,
+        };
+        self.steps(key, &chosen, scale_periods)
     }
 
     /// Runs steps.
-    fn steps(&mut self, key: &str, chosen: &Chosen, keeps: bool) -> Came {
+    fn steps(&mut self, key: &str, chosen: &Chosen, scale_periods: Option<u32>) -> Came {
+        let keeps = chosen.keeps();
         let mut machine = self.machine(key)?;
-        let ran = self.over_steps(&mut machine, chosen, keeps);
+        machine.scale_periods = scale_periods;
+        let ran = self.over_steps(&mut machine, chosen);
         let ran = ran.map_err(|error| ended(&mut machine, error));
         machine.leave();
         let (conditions, Ran { done, tunable }) = ran?;
@@ -131,7 +139,6 @@ impl Worker {
         &mut self,
         machine: &mut PageMachine,
         chosen: &Chosen,
-        keeps: bool,
     ) -> Result<(Conditions, Ran), RecordError> {
         machine.take_over()?;
         let identity = machine.ask("*IDN?")?.unwrap_or_default();
@@ -141,7 +148,7 @@ impl Worker {
             date: today(),
             temperature_c: None,
         };
-        if keeps {
+        if chosen.keeps() {
             let before = Backup::of(machine)?;
             self.files.put(BEFORE, &before.to_string());
             self.before = Some(before);
@@ -233,6 +240,7 @@ impl Worker {
             control: Arc::clone(&self.control),
             told: Arc::clone(&self.told),
             person: self.person.clone(),
+            scale_periods: None,
             place: self.bridge.place(),
             is_ended: false,
             period_s: None,
