@@ -29,8 +29,8 @@ const POINTS: &str = "0x16000201";
 const BEFORE: &str = "0x54500900";
 const PERIOD: u32 = 0x0E00_0200;
 pub(super) const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
-/// Longest time for which the platform turns without being asked again: more than any step takes.
-const TURNING_MS: u32 = 120_000;
+/// Longest time for which the platform turns without being asked again: more than any step takes, with records over a slow line.
+const TURNING_MS: u32 = 600_000;
 /// How often it is looked whether something has ended, s.
 const LOOK_S: f64 = 0.02;
 

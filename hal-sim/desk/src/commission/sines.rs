@@ -16,9 +16,11 @@ const PERIOD_ROWS: usize = PERIOD_TICKS as usize / TICKS_PER_ROW;
 /// Harmonics of the lowest line and of the highest, 29 Hz and 2.3 kHz, and lines at a time.
 const HARMONICS: [u32; 2] = [6, 470];
 const LINES: usize = 15;
-/// Time that a turn at a steady rate takes to begin, s, and that a move to a place takes at most.
+/// Time that a turn at a steady rate takes to begin, s, that a move to a place takes at most, and that all turns back take: over a serial line
+/// records are fetched for minutes, while the platform turns on.
 const BEGIN_S: f64 = 0.3;
 const LONGEST_S: f64 = 20.0;
+const LONGEST_BACK_S: f64 = 120.0;
 
 /// Where, mm, and at what rate the platform turns about its centre, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +137,7 @@ pub fn excite(
     bench.ask("HLT")?;
     bench.settle()?;
     bench.ask("MOV X 0 Y 0 W 0")?;
-    bench.wait_for_target(LONGEST_S)?;
+    bench.wait_for_target(LONGEST_BACK_S)?;
     match frequency_response(&runs, &Timing::STAGE) {
         Ok(lines) => Ok(Excited { runs, lines }),
         Err(error) => fail(
