@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use tokio::sync::{broadcast, oneshot, watch};
+use tokio::time::timeout;
 
 use super::arbiter::{Arbiter, Verdict, ViewerNumber, page_name};
 use super::own_line::{Jogs, OwnLine};
@@ -35,6 +36,8 @@ const WAITING: usize = 64;
 const BACKLOG: usize = 128;
 /// `#24`.
 const STOP: u8 = 24;
+/// How long a viewer may be busy with a line of its own when it is asked whether it owns the stage.
+const OWNER_PATIENCE: Duration = Duration::from_millis(500);
 /// Bytes of randomness in the key of a way.
 const KEY_BYTES: usize = 8;
 
@@ -180,9 +183,16 @@ impl Bridge {
     }
 
     /// The way with this key, while its viewer is there.
-    pub fn way_of(&self, key: &str) -> Weak<Way> {
+    fn way_of(&self, key: &str) -> Weak<Way> {
         let ways = self.ways.lock().unwrap_or_else(PoisonError::into_inner);
         ways.get(key).cloned().unwrap_or_default()
+    }
+
+    /// The way with this key if its viewer owns the stage.
+    pub async fn owners_way(&self, key: &str) -> Option<Arc<Way>> {
+        let way = self.way_of(key).upgrade()?;
+        let owns = timeout(OWNER_PATIENCE, way.owns()).await.unwrap_or(false);
+        owns.then_some(way)
     }
 
     async fn ask(&self, viewer: ViewerNumber, line: String, jogs: Jogs) -> Result<Answer, Refusal> {

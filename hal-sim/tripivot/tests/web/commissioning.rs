@@ -68,6 +68,14 @@ fn a_stop_of_any_page_ends_it_and_a_task_waits_for_its_person() {
     let page = stage.page();
     let mut viewer = Viewer::ready(&page);
     let mut operator = operator(&page);
+    // A step that needs what another one finds is refused by its name, the first time that anything is asked for.
+    order(&mut operator, &json!({"only": {"step": "hand"}}));
+    let refused = told(&mut operator, |status| {
+        status["runs"] == false && status["said"] != ""
+    });
+    assert_eq!(refused["what"], "one step of commissioning");
+    let said = refused["said"].as_str().unwrap();
+    assert!(said.contains("begin with `wiring`"), "{said}");
     // Whoever serves this page has no simulated person.
     order(&mut operator, &json!({"only": {"step": "zeros"}}));
     let asked = told(&mut operator, |status| !status["asks"].is_null());

@@ -10,15 +10,13 @@ use std::time::Duration;
 
 use firmware::gcs::Operator as Comparison;
 use script::Line;
-use tokio::time::{Instant, sleep, timeout};
+use tokio::time::{Instant, sleep};
 
 use crate::error_words::refused_with;
 use crate::web::bridge::{Bridge, HeldWay, Way};
 
 /// Between two looks at what is waited for.
 const LOOK_EVERY: Duration = Duration::from_millis(40);
-/// How long the page may be busy with a line of its own when it is asked whether it owns the stage: orders wait meanwhile.
-const OWNER_PATIENCE: Duration = Duration::from_millis(500);
 /// Lines after which the target is theirs until the next command.
 const TARGETS: [&str; 6] = ["MOV", "MVR", "MRT", "MRW", "STE", "FRF"];
 /// Lines after which the target goes on changing by itself.
@@ -65,12 +63,8 @@ impl Performer {
 
     /// Goes by the way with this key if that one owns the stage, and else by its own.
     pub async fn choose_way(&mut self, key: &str) {
-        let way = self.bridge.way_of(key);
-        let owns = match way.upgrade() {
-            Some(way) => timeout(OWNER_PATIENCE, way.owns()).await.unwrap_or(false),
-            None => false,
-        };
-        self.owners = if owns { way } else { Weak::new() };
+        let way = self.bridge.owners_way(key).await;
+        self.owners = way.map_or_else(Weak::new, |way| Arc::downgrade(&way));
     }
 
     fn way(&self) -> Arc<Way> {

@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
-use std::time::Duration;
 
 use tokio::runtime::Handle;
-use tokio::time::timeout;
 
 use super::control::Control;
 use super::files::{FOLDER, Files};
@@ -17,11 +15,9 @@ use crate::commission::{
 };
 use crate::date::today;
 use crate::record::RecordError;
-use crate::web::bridge::{Bridge, Way};
+use crate::web::bridge::Bridge;
 use crate::web::operator::journal::Journal;
 
-/// How long a page may be busy with a line of its own when it is asked whether it owns the stage.
-const OWNER_PATIENCE: Duration = Duration::from_millis(500);
 const REPORT: &str = "report.html";
 const BEFORE: &str = "before.txt";
 
@@ -79,7 +75,11 @@ impl Worker {
                 return self.by_hand(key, other);
             }
         };
-        let chosen = chosen.map_err(|error| error.to_string())?;
+        let chosen = chosen.map_err(|error| {
+            // Refused under the name of what was asked for.
+            self.told.begins(what, None);
+            error.to_string()
+        })?;
         self.told.begins(what, Some(chosen.steps()));
         let scale_periods = match order {
             Order::Commission { scale_periods, .. } | Order::Only { scale_periods, .. } => {
@@ -231,8 +231,7 @@ impl Worker {
     fn machine(&self, key: &str) -> Result<PageMachine, String> {
         let own =
             (self.bridge.way()).map_err(|error| format!("no way to the controller: {error}"))?;
-        let owners = self.bridge.way_of(key).upgrade();
-        let owners = owners.filter(|way| self.owns(way));
+        let owners = self.runtime.block_on(self.bridge.owners_way(key));
         Ok(PageMachine {
             own,
             owners,
@@ -245,11 +244,6 @@ impl Worker {
             is_ended: false,
             period_s: None,
         })
-    }
-
-    fn owns(&self, way: &Way) -> bool {
-        let owns = async { timeout(OWNER_PATIENCE, way.owns()).await.unwrap_or(false) };
-        self.runtime.block_on(owns)
     }
 }
 
