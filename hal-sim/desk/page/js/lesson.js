@@ -12,6 +12,15 @@ const SECONDS = 5;
 const ROUNDS = 3;
 const GEOMETRY = { radius: 100, start: 20, end: 180, disk: 80 };
 
+/** The mechanism at an instant of a movement. */
+export function drawFrame(canvas, { pose: [x, y, deg], pivots }) {
+  const { context, width, height } = fit(canvas);
+  const plane = new Plane(width, height, 1.75 * GEOMETRY.radius);
+  context.clearRect(0, 0, width, height);
+  drawTrack(context, plane, GEOMETRY);
+  drawMechanism(context, plane, GEOMETRY, { centre: [x, y], deg, pivots });
+}
+
 export class Lesson {
   #movements = [];
   #chosen = 0;
@@ -54,11 +63,6 @@ export class Lesson {
     const key = `${this.#chosen} ${frame} ${this.canvas.clientWidth} ${devicePixelRatio}`;
     if (key === this.#drawn) return;
     this.#drawn = key;
-    const { context, width, height } = fit(this.canvas);
-    const plane = new Plane(width, height, 1.75 * GEOMETRY.radius);
-    context.clearRect(0, 0, width, height);
-    drawTrack(context, plane, GEOMETRY);
-    const { pose: [x, y, deg], pivots } = movement.frames[frame];
-    drawMechanism(context, plane, GEOMETRY, { centre: [x, y], deg, pivots });
+    drawFrame(this.canvas, movement.frames[frame]);
   }
 }

@@ -1,13 +1,12 @@
 // What commissioning asks a person to do, drawn with the stage's own kinematics, which the server has computed.
 
-import { drawMechanism, drawTrack } from "./mechanism.js";
+import { drawFrame } from "./lesson.js";
 import { onColours } from "./theme.js";
-import { fit, inSight, Plane } from "./view.js";
+import { inSight } from "./view.js";
 
 /** Longest wait for the movements. */
 const PATIENCE_MS = 2000;
 const SECONDS = 5;
-const GEOMETRY = { radius: 100, start: 20, end: 180, disk: 80 };
 
 export class TaskPicture {
   /** `turn` or `jig`; empty: nothing is drawn. */
@@ -35,11 +34,6 @@ export class TaskPicture {
     const key = `${this.task} ${frame} ${this.canvas.clientWidth} ${devicePixelRatio}`;
     if (key === this.#drawn) return;
     this.#drawn = key;
-    const { context, width, height } = fit(this.canvas);
-    const plane = new Plane(width, height, 1.75 * GEOMETRY.radius);
-    context.clearRect(0, 0, width, height);
-    drawTrack(context, plane, GEOMETRY);
-    const { pose: [x, y, deg], pivots } = frames[frame];
-    drawMechanism(context, plane, GEOMETRY, { centre: [x, y], deg, pivots });
+    drawFrame(this.canvas, frames[frame]);
   }
 }
