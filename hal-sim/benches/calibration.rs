@@ -42,7 +42,7 @@ const fn row(kit: Kit, is_planned: bool, noise_nm: f64, noise_urad: f64, visits:
     }
 }
 
-const ROWS: [Row; 16] = [
+const ROWS: [Row; 18] = [
     row(Kit::Xyt, true, 5.0, 0.1, 60),
     row(Kit::Xyt, false, 5.0, 0.1, 60),
     row(Kit::Xyt, true, 50.0, 1.0, 200),
@@ -57,6 +57,8 @@ const ROWS: [Row; 16] = [
     row(Kit::Camera2, false, 500.0, 0.0, 600),
     row(Kit::Xy, true, 50.0, 0.0, 200),
     row(Kit::Xy, false, 50.0, 0.0, 200),
+    row(Kit::Balls, true, 500.0, 0.0, 200),
+    row(Kit::Balls, false, 500.0, 0.0, 200),
     row(Kit::Ends, true, 2000.0, 0.0, 200),
     row(Kit::Ends, false, 2000.0, 0.0, 200),
 ];

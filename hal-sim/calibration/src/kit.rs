@@ -22,17 +22,20 @@ pub enum Kit {
     Camera,
     /// The same camera at two places, one after the other.
     Camera2,
+    /// Two gauges across each other against balls on the platform whose places are not known well, at two places, one after the other.
+    Balls,
     /// No instrument: pivots driven against the ends of their guides.
     Ends,
 }
 
 /// All kits.
-pub const KITS: [Kit; 6] = [
+pub const KITS: [Kit; 7] = [
     Kit::Xyt,
     Kit::Xy,
     Kit::Theta,
     Kit::Camera,
     Kit::Camera2,
+    Kit::Balls,
     Kit::Ends,
 ];
 
@@ -42,7 +45,7 @@ impl Kit {
     pub const fn rows(self) -> usize {
         match self {
             Self::Xyt => 3,
-            Self::Xy | Self::Camera | Self::Camera2 => 2,
+            Self::Xy | Self::Camera | Self::Camera2 | Self::Balls => 2,
             Self::Theta | Self::Ends => 1,
         }
     }
@@ -56,6 +59,7 @@ impl Kit {
             Self::Theta => "theta",
             Self::Camera => "camera",
             Self::Camera2 => "camera2",
+            Self::Balls => "balls",
             Self::Ends => "ends",
         }
     }
@@ -69,7 +73,7 @@ impl fmt::Display for Kit {
 
 /// There is no such kit.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("'{0}' is no kit: there are xyt, xy, theta, camera, camera2, ends")]
+#[error("'{0}' is no kit: there are xyt, xy, theta, camera, camera2, balls, ends")]
 pub struct UnknownKit(pub String);
 
 impl FromStr for Kit {
@@ -106,13 +110,13 @@ pub struct Instrument {
     pub noise: Noise,
     /// Axes of the instrument in the base frame (x, y, angle), then its target in the platform's (x, y, angle); not of cameras.
     pub alignment: [f64; 6],
-    /// Marks in the platform frame, of cameras.
+    /// Marks in the platform frame, of cameras; balls, of gauges.
     pub marks: Vec<[f64; 2]>,
-    /// Places of the camera in the base frame.
+    /// Places of the camera, or of the gauges, in the base frame.
     pub cameras: Vec<[f64; 2]>,
     /// Ends of guides that pivots can touch: which guide, from 0, and where on it.
     pub ends: Vec<(usize, f64)>,
-    /// How well the mean distance of the marks is known, as a share of it: it alone gives cameras their scale.
+    /// How well the mean distance of the marks or balls is known, as a share of it: it alone gives cameras and gauges their scale.
     pub scale: f64,
 }
 
@@ -121,14 +125,17 @@ const ALIGNMENT: f64 = 0.05;
 const CAMERA: f64 = 0.01;
 /// How well marks are placed, and the plate on the platform: 0.1 mm.
 const MARK: f64 = 1e-3;
-/// Where guides end, and how well they do: 0.5 mm.
-const ENDS: [f64; 2] = [0.16, 1.84];
+/// Where guides end by the drawing, the inner end first, track radii; and how well they do: 0.5 mm.
+pub const GUIDE_ENDS: [f64; 2] = [0.16, 1.84];
 const END: f64 = 5e-3;
-/// How well a length is known, unless it is said.
+/// How well the mean distance of a plate's marks is known; and that of the balls: 1 um.
 const SCALE: f64 = 1e-6;
+const BALLS_SCALE: f64 = 2e-5;
 /// Pitch of the marks and radius of the plate, and places of the camera: both away from the track's centre, 90 mm apart.
 const PITCH: f64 = 0.275;
 const CAMERAS: [[f64; 2]; 2] = [[0.45, 0.1], [-0.42, -0.15]];
+/// The balls: not on one circle, so that they are told apart from each other's orientations.
+const BALLS: [[f64; 2]; 3] = [[0.6, 0.0], [-0.35, 0.5], [-0.25, -0.55]];
 /// Place of the target whose x and y are measured.
 const TARGET: [f64; 2] = [0.3, 0.2];
 
@@ -146,8 +153,12 @@ impl Instrument {
                 let places = if kit == Kit::Camera { 1 } else { 2 };
                 cameras.extend(&CAMERAS[..places]);
             }
+            Kit::Balls => {
+                marks.extend(&BALLS);
+                cameras.extend(&CAMERAS);
+            }
             Kit::Ends => {
-                let of_guide = |guide: usize| ENDS.map(|place| (guide, place));
+                let of_guide = |guide: usize| GUIDE_ENDS.map(|place| (guide, place));
                 ends.extend((0..3).flat_map(of_guide));
             }
         }
@@ -158,7 +169,11 @@ impl Instrument {
             marks,
             cameras,
             ends,
-            scale: SCALE,
+            scale: if kit == Kit::Balls {
+                BALLS_SCALE
+            } else {
+                SCALE
+            },
         }
     }
 

@@ -19,6 +19,7 @@
 //! | `descent`, `residuals` | Gauss-Newton's steps; what is left after them, and outliers |
 //! | `scatter` | what the machine itself does not repeat |
 //! | [`mod@left`] | what a fit leaves, by visit, pivot and harmonic |
+//! | [`mod@contact`] | how a stage comes to the end of a guide, and where that is |
 //! | [`drift`] | what has moved while was measured |
 //! | [`mod@judge`] | whether a machine of given numbers is the one that was measured |
 //! | `error` | why there is no fit |
@@ -32,6 +33,7 @@
 
 pub mod accuracy;
 pub mod alignment;
+pub mod contact;
 mod descent;
 pub mod drift;
 mod error;
@@ -58,7 +60,7 @@ pub use drift::Drift;
 pub use error::FitError;
 pub use fit::{Fit, fit};
 pub use judge::{Judged, Predicted, judge};
-pub use kit::{Instrument, Kit, Noise};
+pub use kit::{GUIDE_ENDS, Instrument, Kit, Noise};
 pub use left::{Left, left};
 pub use plan::{Plan, plan};
 pub use visit::{Seen, Visit};

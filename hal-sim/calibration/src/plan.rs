@@ -45,7 +45,7 @@ pub enum At {
 /// Guides end outside the disk: there carriages are still 20.7 deg apart.
 const TOUCHING_DISK: f64 = 0.88;
 /// So far the other guides keep from their ends, track radii.
-const CLEAR_OF_ENDS: core::ops::Range<f64> = 0.18..1.82;
+pub(crate) const CLEAR_OF_ENDS: core::ops::Range<f64> = 0.18..1.82;
 /// Beyond this angle between pivot and guide no end is inside that disk.
 const MOST_LEAN_RAD: f64 = 0.2;
 
@@ -95,7 +95,7 @@ pub fn plan(instrument: &Instrument, poses: usize) -> Option<Plan> {
     })
 }
 
-/// Poses all over the disk, for cameras such as bring a mark under it, for ends such as touch one; from this one of an endless sequence on.
+/// Poses all over the disk, for cameras such as bring a mark under it, for gauges a ball between them, for ends such as touch one; from this one of an endless sequence on.
 #[must_use]
 pub fn stops(instrument: &Instrument, first: usize, count: usize) -> Vec<Stop> {
     // Half of all marks and orientations bring the platform out of the disk: so many tries are plenty.
@@ -104,9 +104,10 @@ pub fn stops(instrument: &Instrument, first: usize, count: usize) -> Vec<Stop> {
         Kit::Xyt | Kit::Xy | Kit::Theta => (over_disk(DISK).skip(first).take(count))
             .map(|pose| Stop { pose, at: At::Pose })
             .collect(),
-        Kit::Camera | Kit::Camera2 => (tries.filter_map(|share| under_camera(instrument, share)))
-            .take(count)
-            .collect(),
+        Kit::Camera | Kit::Camera2 | Kit::Balls => (tries
+            .filter_map(|share| under_camera(instrument, share)))
+        .take(count)
+        .collect(),
         Kit::Ends => (tries.filter_map(|share| against_end(instrument, share)))
             .take(count)
             .collect(),

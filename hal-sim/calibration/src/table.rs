@@ -19,13 +19,17 @@ use crate::kit::{Instrument, Kit, Noise};
 use crate::visit::{Seen, Visit};
 
 const READINGS: &str = "m1_deg,m2_deg,m3_deg";
-const COLUMNS: [(Kit, &str); 5] = [
+const COLUMNS: [(Kit, &str); 6] = [
     (Kit::Xyt, "x_mm,y_mm,theta_deg"),
     (Kit::Xy, "x_mm,y_mm"),
     (Kit::Theta, "theta_deg"),
     (
         Kit::Camera,
         "mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm,off_x_um,off_y_um",
+    ),
+    (
+        Kit::Balls,
+        "ball_x_mm,ball_y_mm,gauge_x_mm,gauge_y_mm,off_x_um,off_y_um",
     ),
     (Kit::Ends, "guide,end_mm"),
 ];
@@ -142,7 +146,7 @@ impl Table {
             table.visits.push(visit);
             table.lines.push(line);
         }
-        if table.cameras.len() > 1 {
+        if kit == Kit::Camera && table.cameras.len() > 1 {
             table.kit = Kit::Camera2;
         }
         Ok(table)
@@ -177,11 +181,13 @@ impl Table {
             (Kit::Xyt, &[x, y, theta]) => Seen::Pose([radii(x), radii(y), theta.to_radians()]),
             (Kit::Xy, &[x, y]) => Seen::Place([radii(x), radii(y)]),
             (Kit::Theta, &[theta]) => Seen::Turn(theta.to_radians()),
-            (Kit::Camera, &[mark_x, mark_y, camera_x, camera_y, x_um, y_um]) => Seen::Mark {
-                mark: place_in(&mut self.marks, [radii(mark_x), radii(mark_y)]),
-                camera: place_in(&mut self.cameras, [radii(camera_x), radii(camera_y)]),
-                off: [radii(x_um / UM_PER_MM), radii(y_um / UM_PER_MM)],
-            },
+            (Kit::Camera | Kit::Balls, &[mark_x, mark_y, camera_x, camera_y, x_um, y_um]) => {
+                Seen::Mark {
+                    mark: place_in(&mut self.marks, [radii(mark_x), radii(mark_y)]),
+                    camera: place_in(&mut self.cameras, [radii(camera_x), radii(camera_y)]),
+                    off: [radii(x_um / UM_PER_MM), radii(y_um / UM_PER_MM)],
+                }
+            }
             (Kit::Ends, &[guide, end]) => Seen::End {
                 end: place_in(&mut self.ends, [guide, radii(end)]),
             },
@@ -197,11 +203,9 @@ impl Table {
 /// Writes visits of an instrument as a table.
 #[must_use]
 pub fn to_text(instrument: &Instrument, visits: &[Visit], radius_mm: f64) -> String {
-    let is_camera = !instrument.cameras.is_empty();
-    let kit = if is_camera {
-        Kit::Camera
-    } else {
-        instrument.kit
+    let kit = match instrument.kit {
+        Kit::Camera2 => Kit::Camera,
+        kit => kit,
     };
     let columns = COLUMNS.iter().find(|(known, _)| *known == kit);
     let mut text = format!(

@@ -31,6 +31,7 @@ fn freedoms_are_those_of_each_kit() {
         (Kit::Theta, 11, choices.clone()),
         (Kit::Camera, 9, plate),
         (Kit::Camera2, 7, choices.clone()),
+        (Kit::Balls, 7, choices.clone()),
         (Kit::Ends, 7, choices),
     ] {
         let plan = plan(&Instrument::new(kit, NOISE), 20).expect("finite numbers");

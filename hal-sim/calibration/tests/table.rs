@@ -30,6 +30,7 @@ fn visits_come_back_from_their_table() {
         (Kit::Theta, vec![Seen::Turn(1.25)]),
         (Kit::Camera, vec![mark(3, 0), mark(17, 0), mark(3, 0)]),
         (Kit::Camera2, vec![mark(3, 1), mark(17, 0), mark(3, 0)]),
+        (Kit::Balls, vec![mark(2, 1), mark(0, 0), mark(2, 0)]),
         (Kit::Ends, vec![Seen::End { end: 4 }, Seen::End { end: 1 }]),
     ] {
         let instrument = Instrument::new(kit, NOISE);

@@ -13,6 +13,7 @@
 //! | [`mod@closed_loop`] | plant and sensitivity as they were measured with the servo on |
 //! | [`chain`] | the machine as it answers to small motions: motors, rings, platform, springs between |
 //! | [`mod@platform`] | mass, inertia and centre of what is carried, from a tour |
+//! | [`mod@guide_ends`] | zeros of the encoders from where the guides end |
 //! | [`zeros`] | wrong zeros of the encoders, from a tour |
 //! | [`tuning`] | margins of the three loops together; gains and notches for them |
 //! | `spectrum`, `least_squares` | spectra of single periods; non-linear least squares |
@@ -35,6 +36,7 @@ pub mod closed_loop;
 pub mod drive_model;
 pub mod frequency_response;
 pub mod friction;
+pub mod guide_ends;
 mod least_squares;
 pub mod platform;
 pub mod record;
@@ -47,6 +49,7 @@ pub mod zeros;
 pub use drive_model::{DriveModel, drive_model};
 pub use frequency_response::frequency_response;
 pub use friction::friction;
+pub use guide_ends::guide_ends;
 pub use platform::platform;
 pub use record::{Record, Signals, Timing};
 pub use subdivision::subdivision;

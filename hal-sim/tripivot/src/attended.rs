@@ -54,10 +54,10 @@ impl SimulatedMachine {
         )
     }
 
-    /// Switched on, with a controller that is told the machine's drives and load unless this flash keeps others.
+    /// Switched on, with a controller that is told this of the machine unless this flash keeps something else.
     #[must_use]
-    pub fn told(stage: &StageParameters, flash: SettingsFlash) -> Self {
-        let parameters = Told::Machine.parameters(&Parameters::REFERENCE, stage);
+    pub fn told(stage: &StageParameters, flash: SettingsFlash, told: Told) -> Self {
+        let parameters = told.parameters(&Parameters::REFERENCE, stage);
         Self::switched_on(stage, &parameters, flash, None)
     }
 

@@ -217,7 +217,11 @@ fn wrong_files_and_options_are_refused() {
     assert_refused(&calibrate(&folder, &none), 2, "cannot read none.csv: ");
     let plan = |arguments: &[&str]| calibrate(&folder, &[&["plan"][..], arguments].concat());
     let kit = plan(&["--kit", "sextant", "--noise", "1nm", "--poses", "20"]);
-    assert_refused(&kit, 2, "there are xyt, xy, theta, camera, camera2, ends");
+    assert_refused(
+        &kit,
+        2,
+        "there are xyt, xy, theta, camera, camera2, balls, ends",
+    );
     for noise in ["50", "0nm", "50urad", "nm", "NaNnm", "2mm"] {
         let output = plan(&["--kit", "xyt", "--noise", noise, "--poses", "20"]);
         assert_refused(&output, 2, "not a length from 0.1nm to 1mm, such as 50nm");

@@ -3,10 +3,11 @@
 use desk::commission::{Backup, Chosen, GainsError, Machine, PutError, run};
 use firmware::control::servo::BorneLimits;
 use firmware::parameters::Parameters;
-use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::machine::devices::{COUNTS_PER_TURN, SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, machine_settings, stage_parameters};
+use std::f64::consts::TAU;
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
@@ -24,6 +25,9 @@ const MOST_FRICTION_ERROR_AGAIN: f64 = 0.0096;
 
 /// And of zeros by forces, mrad.
 const MOST_ZERO_ERROR_MRAD: f64 = 3.7;
+
+/// And of zeros in the jig or by the guides' ends, rad: guides of such machines stand 2 mrad off, and scales.
+const MOST_COARSE_ZERO_ERROR_RAD: f64 = 5.85e-3;
 
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("tripivot-{name}-{}", std::process::id()));
@@ -74,31 +78,51 @@ fn wiring(machine: &StageParameters) -> ([u8; 3], [u8; 3]) {
     (wiring.port_of_ring.map(|port| port + 1), of_bridge)
 }
 
+/// Limits of a commissioning.
+struct Most {
+    /// All of it, by the controller's clock.
+    seconds: f64,
+    /// What is left of the encoders' errors within the periods of their scales: the worst of what was measured here, and a tenth more.
+    left_within_periods_urad: f64,
+}
+
+const WITH_JIG: Most = Most {
+    seconds: 300.0,
+    left_within_periods_urad: 0.0111,
+};
+const WITHOUT_JIG: Most = Most {
+    seconds: 420.0,
+    left_within_periods_urad: 0.0187,
+};
+
 #[test]
 fn a_sound_machine_is_brought_up() {
-    let folder = brings_up(1);
+    let folder = brings_up(1, &[], &WITH_JIG);
     a_wrong_zero_is_found(1, &folder);
     let _ = std::fs::remove_dir_all(&folder);
 }
 
 #[test]
-fn a_sound_machine_whose_friction_varies_over_a_turn_is_brought_up() {
-    let folder = brings_up(19);
+fn a_sound_machine_whose_friction_varies_over_a_turn_is_brought_up_without_a_jig() {
+    let folder = brings_up(19, &["--without-jig"], &WITHOUT_JIG);
     let _ = std::fs::remove_dir_all(&folder);
 }
 
 /// The folder with what its controller keeps.
-fn brings_up(seed: u64) -> PathBuf {
+fn brings_up(seed: u64, how: &[&str], most: &Most) -> PathBuf {
     let machine = unknown(seed);
-    let (output, folder) = commission(&format!("sound-{seed}"), &["--unknown", &seed.to_string()]);
+    let number = seed.to_string();
+    let arguments = [&["--unknown", &number], how].concat();
+    let (output, folder) = commission(&format!("sound-{seed}"), &arguments);
     let told = text(&output);
     assert_eq!(output.status.code(), Some(0), "{told}");
     finds_the_wires(&machine, &told);
+    finds_the_zeros(&machine, &told);
     finds_the_motors(&machine, &told, [MOST_CONSTANT_ERROR, MOST_FRICTION_ERROR]);
-    finds_errors_within_periods(&machine, &told);
+    finds_errors_within_periods(&machine, &told, most.left_within_periods_urad);
     finds_what_is_moved(&machine, &told);
     finds_gains(&told);
-    ends_in_time(&told);
+    ends_in_time(&told, most.seconds);
     finds_limits(&machine, &told);
     assert!(folder.join("settings.flash").exists());
     let report = std::fs::read_to_string(folder.join("report.html")).expect("a report");
@@ -140,6 +164,30 @@ fn finds_the_wires(machine: &StageParameters, told: &str) {
     }
 }
 
+/// Zeros that are all turned alike are another frame: what counts is how far they are off beside each other.
+fn finds_the_zeros(machine: &StageParameters, told: &str) {
+    let [ports, _] = pivots(machine);
+    let too_large_rad = [0, 1, 2].map(|pivot: usize| {
+        let found = numbers(told, &format!("zero of encoder {}", pivot + 1)).next();
+        let ring = (machine.wiring.port_of_ring.iter()).position(|port| port + 1 == ports[pivot]);
+        let encoder = &machine.encoders[ring.expect("one")];
+        let sign = if encoder.reversed { 1.0 } else { -1.0 };
+        let turns =
+            (found.expect("a zero") - f64::from(encoder.zero_counts)) / f64::from(COUNTS_PER_TURN);
+        sign * turns * TAU
+    });
+    for pivot in [1, 2] {
+        let off = too_large_rad[pivot] - too_large_rad[0];
+        let off = off - TAU * (off / TAU).round();
+        println!(
+            "zero of encoder {}: off by {:.2} mrad beside that of encoder 1",
+            pivot + 1,
+            off * 1e3
+        );
+        assert!(off.abs() < MOST_COARSE_ZERO_ERROR_RAD);
+    }
+}
+
 /// The first number behind a name, over what it is, less 1.
 fn error(told: &str, name: &str, truth: f64) -> f64 {
     let found = numbers(told, name).next().expect("a number");
@@ -161,7 +209,7 @@ fn finds_the_motors(machine: &StageParameters, told: &str, [most, most_friction]
 
 /// What the encoders' sines are as first seen, of which the servo makes some hundredths more, and what is left of them, urad: the worst of the
 /// machines tried here, and a tenth more.
-fn finds_errors_within_periods(machine: &StageParameters, told: &str) {
+fn finds_errors_within_periods(machine: &StageParameters, told: &str, most_left_urad: f64) {
     let wiring = machine.wiring;
     let first = (0..3).find(|ring| wiring.bridge_of_ring[*ring] == 0);
     for pivot in 0..3 {
@@ -174,7 +222,7 @@ fn finds_errors_within_periods(machine: &StageParameters, told: &str) {
         let off = error(told, &name, truth_urad);
         let left_urad = numbers(told, &name).nth(1).expect("what is left");
         println!("{left_urad} urad left");
-        assert!(off.abs() < 0.087 && left_urad < 0.0111, "{told}");
+        assert!(off.abs() < 0.087 && left_urad < most_left_urad, "{told}");
     }
 }
 
@@ -228,10 +276,7 @@ fn finds_gains(told: &str) {
     assert!(better || !sound);
 }
 
-/// Most that all of it may take, by the controller's clock, s.
-const MOST_SECONDS: f64 = 300.0;
-
-fn ends_in_time(told: &str) {
+fn ends_in_time(told: &str, most_seconds: f64) {
     let seconds = told
         .rsplit_once("commissioned in ")
         .map_or("", |(_, behind)| behind);
@@ -240,7 +285,7 @@ fn ends_in_time(told: &str) {
         .next()
         .and_then(|text| text.parse::<f64>().ok());
     assert!(
-        seconds.is_some_and(|seconds| seconds < MOST_SECONDS),
+        seconds.is_some_and(|seconds| seconds < most_seconds),
         "{told}"
     );
 }
@@ -410,7 +455,7 @@ fn a_wrong_zero_is_found(seed: u64, folder: &Path) {
         let off = numbers(&told, &line).next().expect("a number") - truth;
         assert!(off.abs() < MOST_ZERO_ERROR_MRAD, "{told}");
     }
-    assert!(told.contains("put the platform into its jig"), "{told}");
+    assert!(told.contains("find the zeros again"), "{told}");
 }
 
 fn its_settings_run_the_machine(seed: u64, folder: &Path) {
@@ -548,7 +593,7 @@ fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
     let mut stage = StageParameters::REFERENCE;
     // A gap through which no servo of it holds still.
     stage.plant.backlash_rad = 5e-3;
-    let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory());
+    let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory(), Told::Machine);
     let speed = machine.ask("VLS?").expect("it answers");
     let chosen = Chosen::only("reference").expect("a step");
     let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");

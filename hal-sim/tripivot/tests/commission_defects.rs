@@ -1,6 +1,6 @@
 //! `tripivot commission` on machines with something broken: refused at a step that names it, before anything has moved far.
 
-use desk::commission::{Chosen, Done, run};
+use desk::commission::{Chosen, Done, ZerosBy, run};
 use hal_sim::front::{Host, Wiring};
 use hal_sim::machine::devices::{EncoderFault, SettingsFlash};
 use hal_sim::machine::unknown;
@@ -59,7 +59,7 @@ fn commissioned(mut defect: impl FnMut(&mut Host) + 'static) -> Vec<Done> {
             watched.set(now);
         })),
     );
-    let ran = run(&mut machine, &Chosen::all(), &mut |done| {
+    let ran = run(&mut machine, &Chosen::all(ZerosBy::Jig), &mut |done| {
         if !BEFORE_SERVO[..3].contains(&done.step.name) {
             let now = driven.get();
             driven.set(Driven { over: true, ..now });

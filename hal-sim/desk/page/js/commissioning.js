@@ -31,8 +31,9 @@ export class Commissioning {
   constructor(operator, firstMove) {
     Object.assign(this, { operator, firstMove });
     for (const name of ["start", "from", "periods", "only", "tune", "undo", "end", "task", "words", "waits", "done", "said", "files", "steps"]) this[name] = byId(`commission-${name}`);
+    this.withoutJig = byId("commission-without-jig");
     const from = () => (this.from.selectedIndex > 0 ? this.from.value : null);
-    this.start.addEventListener("click", () => this.#give(() => ({ commission: { from: from(), scale_periods: this.#periods() } })));
+    this.start.addEventListener("click", () => this.#give(() => ({ commission: { from: from(), scale_periods: this.#periods(), without_jig: this.withoutJig.checked } })));
     this.only.addEventListener("click", () => this.#give(() => ({ only: { step: this.from.value, scale_periods: this.#periods() } })));
     for (const order of ["tune", "undo", "end", "done"]) this[order].addEventListener("click", () => this.#give(() => order));
     byId("commission-open").addEventListener("click", () => {

@@ -1,13 +1,14 @@
 //! A plan is driven, and an instrument read at each of its poses while the encoders are recorded.
 //!
 //! A camera is a null detector: the stage brings the mark under its cross-hair before the reading counts, so the camera's own scale, turn
-//! and distortion do not.
+//! and distortion do not. Ends of guides need no instrument: rings are driven against them, one at a time, with the servo off.
 
 use calibration::accuracy::DISK;
+use calibration::contact::{Pressed, approach as approach_end, contact};
 use calibration::plan::{At, Stop};
 use calibration::{Seen, Visit};
 
-use crate::commission::{Bench, CommissionError, Machine};
+use crate::commission::{Before, Bench, CommissionError, Machine, Touch};
 use crate::record::RecordError;
 
 /// Rows between two visits of the reference pose.
@@ -23,6 +24,10 @@ pub(super) const APPROACH: f64 = 0.01;
 /// Between the directions of two approaches, rad: the golden angle spreads them.
 const APPROACH_STEP_RAD: f64 = 2.399_963;
 const MOST_LOOKS: usize = 8;
+/// So much further than it is drawn an end is looked for, mrad.
+const FURTHER_MRAD: f64 = 60.0;
+/// Until a stage that was let go is at rest, s.
+const LET_GO_S: f64 = 0.3;
 /// Measured angles of the three pivots, as `DRC` takes them.
 const READINGS: [&str; 3] = ["1 2", "2 2", "3 2"];
 
@@ -46,6 +51,8 @@ pub struct Way<'a> {
     pub first: usize,
     /// Radius of the track, mm.
     pub radius_mm: f64,
+    /// Ends of guides, for stops at one: which guide, and where on it.
+    pub ends: &'a [(usize, f64)],
     /// Whether the stops come in pairs, which are gone to from opposite sides.
     pub is_from_both_sides: bool,
 }
@@ -153,11 +160,49 @@ pub fn measure(
             fault => MeasureError::Stage(format!("the stage does not hold{fault}")),
         });
     }
+    let touches = way
+        .stops
+        .iter()
+        .any(|stop| matches!(stop.at, At::End { .. }));
+    let before = match touches {
+        true => Some(widened(&mut stage.bench)?),
+        false => None,
+    };
+    let visited = visits(&mut stage, reader, way, keep);
+    if let Some(before) = before {
+        // As it was, whatever came of the visits: which is what is told of.
+        let given_back = stage
+            .let_go()
+            .and_then(|()| Ok(before.give_back(&mut stage.bench)?));
+        return visited.and(given_back);
+    }
+    visited
+}
+
+/// Limits of excitations as rings need them that go against ends. The servo is off then, and on again with the first visit.
+fn widened(bench: &mut Bench<'_>) -> Result<Before, MeasureError> {
+    bench.ask("CCL 1 ADVANCED")?;
+    bench.ask("SVO X 0")?;
+    bench.delay(LET_GO_S)?;
+    let before = Before::widen(bench)?;
+    bench.hold()?;
+    Ok(before)
+}
+
+fn visits(
+    stage: &mut Stage<'_>,
+    reader: &mut dyn Reader,
+    way: &Way<'_>,
+    keep: &mut dyn FnMut(&Measured) -> Result<(), std::io::Error>,
+) -> Result<(), MeasureError> {
     for (visit, stop) in way.stops.iter().enumerate().skip(way.first) {
-        let (seen, commanded) = stage.seen(reader, visit, stop, way.is_from_both_sides)?;
-        let visited = Visit {
-            readings_rad: stage.readings_rad()?,
-            seen,
+        let (visited, commanded) = if let At::End { end } = stop.at {
+            let touched = stage.touched(visit, stop, end, way.ends)?;
+            (touched, stop.pose)
+        } else {
+            let (seen, commanded) = stage.seen(reader, visit, stop, way.is_from_both_sides)?;
+            let readings_rad = stage.readings_rad()?;
+            (Visit { readings_rad, seen }, commanded)
         };
         keep(&Measured {
             visit,
@@ -230,6 +275,51 @@ impl Stage<'_> {
         let line = format!("MOV X {x_mm:.9} Y {y_mm:.9} W {theta_deg:.9}");
         self.bench.ask(&line)?;
         Ok(self.bench.wait_for_target(LONGEST_S)?)
+    }
+
+    /// Goes to where one ring alone brings a pivot to an end of its guide, has that done with the servo off, and comes back.
+    fn touched(
+        &mut self,
+        visit: usize,
+        stop: &Stop,
+        end: usize,
+        ends: &[(usize, f64)],
+    ) -> Result<Visit, MeasureError> {
+        let failed = |reason: String| MeasureError::Reading { visit, reason };
+        let way = approach_end(&stop.pose)
+            .ok_or_else(|| failed("no ring alone comes to this end".to_owned()))?;
+        let &(guide, drawn) = ends
+            .get(end)
+            .ok_or_else(|| failed("there is no such end".to_owned()))?;
+        self.go(&way.from)?;
+        self.let_go()?;
+        let touch = Touch {
+            ring: way.ring,
+            sign: way.by_rad.signum(),
+        };
+        let within_mrad = way.by_rad.abs() * 1e3 + FURTHER_MRAD;
+        let signals = touch.recorded(&mut self.bench, within_mrad)?;
+        Touch::go(&mut self.bench, way.ring, -way.by_rad)?;
+        self.bench.hold()?;
+        let rows: Vec<Pressed> = (0..signals[0].angle_rad.len())
+            .map(|row| Pressed {
+                readings_rad: signals.each_ref().map(|pivot| pivot.angle_rad[row]),
+                current_a: touch.sign * signals[way.ring].current_a[row],
+            })
+            .collect();
+        let side = usize::from(drawn > 1.0);
+        let readings_rad =
+            contact(&rows, (guide, side), way.ring).map_err(|error| failed(error.to_string()))?;
+        Ok(Visit {
+            readings_rad,
+            seen: Seen::End { end },
+        })
+    }
+
+    /// Motors off.
+    fn let_go(&mut self) -> Result<(), MeasureError> {
+        self.bench.ask("SVO X 0")?;
+        Ok(self.bench.delay(LET_GO_S)?)
     }
 
     /// What the encoders read, as the mean of some ticks.

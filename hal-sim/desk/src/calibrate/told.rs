@@ -56,6 +56,9 @@ pub struct Told {
     pub theta_urad: Option<Kind>,
     /// What of seen over predicted is as predicted.
     pub as_predicted: [f64; 2],
+    /// The stage's scale over the instrument's, taken out, where the calibration does not know it.
+    #[serde(default)]
+    pub scale: Option<f64>,
     /// In words.
     pub verdict: String,
     /// The visits.
@@ -91,6 +94,7 @@ impl Told {
             xy_um: kind(now.places, drawn.places, sides[0], um),
             theta_urad: kind(now.turns, drawn.turns, sides[1], URAD),
             as_predicted: [*range.start(), *range.end()],
+            scale: verified.scale,
             verdict: match verified.verdict() {
                 Verdict::Holds => "as predicted",
                 Verdict::Better => "better than predicted",

@@ -4,7 +4,7 @@
 use calibration::accuracy::DISK;
 use calibration::file::Calibration;
 use calibration::plan::{Stop, stops};
-use calibration::{DRAWN, FitError, Instrument, Judged, Kit, Predicted, Visit, judge};
+use calibration::{DRAWN, FitError, Instrument, Judged, Kit, Predicted, Seen, Visit, judge};
 use core::ops::RangeInclusive;
 use kinematics::Geometry;
 
@@ -18,6 +18,10 @@ const PLANNED: usize = 10_000;
 /// What may be seen over what was to be seen; and where the machine does not repeat, whose scatter is known less well than a noise.
 const AS_PREDICTED: RangeInclusive<f64> = 0.77..=1.3;
 const WITH_SCATTER: RangeInclusive<f64> = 0.7..=1.4;
+/// How far a scale may be off that nobody knows; a step of it, and how many.
+const ANY_SCALE: f64 = 0.1;
+const SCALE_STEP: f64 = 1e-4;
+const SCALE_STEPS: usize = 2;
 
 /// Why nothing is verified.
 #[derive(Debug, thiserror::Error)]
@@ -60,6 +64,8 @@ pub struct Verified {
     pub sides: [f64; 2],
     /// What may be seen over what was to be seen.
     pub as_predicted: RangeInclusive<f64>,
+    /// What the stage calls a length over what the instrument does, taken out: of a calibration that does not know it, by an instrument that sees it in each reading.
+    pub scale: Option<f64>,
 }
 
 /// How it stands.
@@ -132,6 +138,7 @@ pub fn verify(
         stops: &stops,
         first: 0,
         radius_mm: Geometry::REFERENCE.radius_mm,
+        ends: &[],
         is_from_both_sides: true,
     };
     let mut all: Vec<Measured> = Vec::new();
@@ -153,7 +160,15 @@ pub fn verify(
         place: calibration.made.expected_xy_nm / radius_nm,
         turn_rad: calibration.made.expected_theta_urad * 1e-6,
     };
-    let now = judge(instrument, &DRAWN, &commanded?, &predicted)?;
+    let scale_is_known = calibration.made.kit != Kit::Ends;
+    let judged = |visits: &[Visit]| {
+        if scale_is_known {
+            return Ok((None, judge(instrument, &DRAWN, visits, &predicted)?));
+        }
+        without_scale(instrument, visits, &predicted)
+    };
+    let (scale, now) = judged(&commanded?)?;
+    let (_, drawn) = judged(&read)?;
     Ok(Verified {
         commanded: all.iter().map(|measured| measured.commanded).collect(),
         sides: apart(&now),
@@ -163,8 +178,49 @@ pub fn verify(
             AS_PREDICTED
         },
         now,
-        drawn: judge(instrument, &DRAWN, &read, &predicted)?,
+        drawn,
+        scale,
     })
+}
+
+/// Judged with the scale that fits best: ends of guides are angles, and tell of no length.
+fn without_scale(
+    instrument: &Instrument,
+    visits: &[Visit],
+    predicted: &Predicted,
+) -> Result<(Option<f64>, Judged), FitError> {
+    if !matches!(instrument.kit, Kit::Xyt | Kit::Xy) {
+        // Cameras find it with their marks; theta has none.
+        let free = Instrument {
+            scale: ANY_SCALE,
+            ..instrument.clone()
+        };
+        return Ok((None, judge(&free, &DRAWN, visits, predicted)?));
+    }
+    let judged = |by: f64| {
+        let scaled: Vec<Visit> = visits.iter().map(|visit| scaled(visit, by)).collect();
+        judge(instrument, &DRAWN, &scaled, predicted)
+    };
+    // Misses are straight in the scale, so their squares are a parabola.
+    let mut by = 0.0;
+    for _ in 0..SCALE_STEPS {
+        let [less, now, more] =
+            [by - SCALE_STEP, by, by + SCALE_STEP].map(|by| Ok::<f64, FitError>(judged(by)?.chi2));
+        let (less, now, more) = (less?, now?, more?);
+        by -= SCALE_STEP * (more - less) / (2.0 * (more - 2.0 * now + less));
+    }
+    Ok((Some(1.0 + by), judged(by)?))
+}
+
+/// What would have been seen with a scale that is larger by a share.
+fn scaled(visit: &Visit, by: f64) -> Visit {
+    let scaled = |place: f64| place * (1.0 + by);
+    let seen = match visit.seen {
+        Seen::Pose([x, y, theta]) => Seen::Pose([scaled(x), scaled(y), theta]),
+        Seen::Place(place) => Seen::Place(place.map(scaled)),
+        other => other,
+    };
+    Visit { seen, ..*visit }
 }
 
 /// How far the errors of visits that follow each other are apart.
@@ -177,4 +233,47 @@ fn apart(judged: &Judged) -> [f64; 2] {
         count += 1.0;
     }
     [place, turn].map(|square: f64| (square / count).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibration::Noise;
+    use calibration::spread::over_disk;
+
+    /// Poses as an instrument sees them whose lengths are another's.
+    fn seen(kit: Kit, scale: f64) -> (Instrument, Vec<Visit>) {
+        let noise = Noise {
+            length: 5e-7,
+            angle_rad: 1e-6,
+            encoder_rad: Noise::ENCODER_RAD,
+        };
+        let visits = over_disk(DISK).take(60).map(|pose| {
+            let [x, y, theta] = pose;
+            let [x, y] = [x, y].map(|place| place / scale);
+            let seen = match kit {
+                Kit::Xyt => Seen::Pose([x, y, theta]),
+                _ => Seen::Place([x, y]),
+            };
+            Visit::commanded(&pose, seen).expect("in reach")
+        });
+        (Instrument::new(kit, noise), visits.collect())
+    }
+
+    #[test]
+    fn a_scale_that_nobody_knows_is_taken_out_and_told() -> Result<(), FitError> {
+        for kit in [Kit::Xyt, Kit::Xy] {
+            let (instrument, visits) = seen(kit, 1.0003);
+            let predicted = Predicted::default();
+            let known = judge(&instrument, &DRAWN, &visits, &predicted)?;
+            let (scale, judged) = without_scale(&instrument, &visits, &predicted)?;
+            println!(
+                "{kit}: {scale:?}, {:e} beside {:e}",
+                judged.chi2, known.chi2
+            );
+            assert!(known.chi2 > 1e3 && judged.chi2 < 1e-6);
+            assert!(scale.is_some_and(|scale| (scale - 1.0003).abs() < 1e-9));
+        }
+        Ok(())
+    }
 }

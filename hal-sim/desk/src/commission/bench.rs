@@ -31,6 +31,8 @@ const PERIOD: u32 = 0x0E00_0200;
 pub(super) const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
 /// Longest time for which the platform turns without being asked again: more than any step takes, with records over a slow line.
 const TURNING_MS: u32 = 600_000;
+/// Longest time after which an excitation is over that should be, s.
+const EXCITATION_END_S: f64 = 4.0;
 /// How often it is looked whether something has ended, s.
 const LOOK_S: f64 = 0.02;
 
@@ -281,7 +283,13 @@ impl<'a> Bench<'a> {
 
     /// Waits until the excitation under way is over.
     pub fn excitation_end(&mut self) -> Result<Ended> {
-        for _ in 0..200 {
+        self.excitation_end_within(EXCITATION_END_S)
+    }
+
+    /// The same of one that may go on for so long.
+    pub fn excitation_end_within(&mut self, seconds: f64) -> Result<Ended> {
+        let looks = (seconds / LOOK_S).ceil() as usize;
+        for _ in 0..looks {
             if self.number("EXC?", "RUNS")? == 0.0 {
                 let by = self.text("EXC?", "END")?;
                 if by == "fault" {
@@ -308,18 +316,27 @@ impl<'a> Bench<'a> {
 
     /// Waits until a move is over and the stage has settled.
     pub fn wait_for_target(&mut self, seconds: f64) -> Result<()> {
+        if self.settles_within(seconds)? {
+            return Ok(());
+        }
+        let fault = self.fault()?;
+        fail(
+            format!("a move has not come to its end in {seconds} s{fault}"),
+            "something rubs or gives way, or the gains are far from this machine's; EVT? tells more",
+        )
+    }
+
+    /// Waits until a move is over and the stage has settled, so long at most, or until a fault: whether it has.
+    pub fn settles_within(&mut self, seconds: f64) -> Result<bool> {
         let end = self.clock_s()? + seconds;
         while self.number("ONT? X", "X")? != 1.0 {
             let fault = self.fault()?;
             if !fault.is_empty() || self.clock_s()? > end {
-                return fail(
-                    format!("a move has not come to its end in {seconds} s{fault}"),
-                    "something rubs or gives way, or the gains are far from this machine's; EVT? tells more",
-                );
+                return Ok(false);
             }
             self.delay(LOOK_S)?;
         }
-        Ok(())
+        Ok(true)
     }
 
     /// Moves one after the other, each within so many seconds: the largest following error of a pivot, rad.

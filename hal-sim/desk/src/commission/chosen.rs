@@ -12,6 +12,9 @@ use super::steps::settle_widely;
 const NOT_FIRST: [&str; 4] = ["hand", "nudges", "response", "tuning"];
 /// Before it the servo is off, and nothing may be commissioned; after it a servo holds the stage.
 const FIRST_SERVO: &str = "sde";
+/// Steps that find the encoders' zeros: one of them is enough.
+const BY_JIG: &str = "zeros";
+const BY_GUIDE_ENDS: &str = "ends";
 /// What ends all of them.
 const LAST: &str = "keep";
 
@@ -22,6 +25,35 @@ pub struct Chosen {
     is_resumed: bool,
     /// Whether the load is not the one that the gains in force are for.
     is_loaded_anew: bool,
+}
+
+/// How the encoders' zeros are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ZerosBy {
+    /// With the platform in its jig.
+    #[default]
+    Jig,
+    /// From where the guides end.
+    GuideEnds,
+}
+
+impl ZerosBy {
+    /// By whether there is no jig.
+    #[must_use]
+    pub const fn new(without_jig: bool) -> Self {
+        if without_jig {
+            Self::GuideEnds
+        } else {
+            Self::Jig
+        }
+    }
+
+    const fn left_out(self) -> &'static str {
+        match self {
+            Self::Jig => BY_GUIDE_ENDS,
+            Self::GuideEnds => BY_JIG,
+        }
+    }
 }
 
 /// What is left of gains for another load until it is known: without the largest one motors move a third of what they move with it.
@@ -46,25 +78,30 @@ pub enum ChoiceError {
 impl Chosen {
     /// All of them.
     #[must_use]
-    pub fn all() -> Self {
-        Self {
-            steps: STEPS.iter().collect(),
-            is_resumed: false,
-            is_loaded_anew: false,
-        }
+    pub fn all(zeros: ZerosBy) -> Self {
+        Self::on(0, zeros.left_out())
     }
 
-    /// A step and those after it.
+    /// A step and those after it. It may itself be the one that finds the zeros the other way.
     ///
     /// # Errors
     /// [`ChoiceError`].
-    pub fn from(name: &str) -> Result<Self, ChoiceError> {
-        let at = index(name)?;
-        Ok(Self {
-            steps: STEPS.iter().skip(at).collect(),
-            is_resumed: at > 0,
+    pub fn from(name: &str, zeros: ZerosBy) -> Result<Self, ChoiceError> {
+        let left_out = match name {
+            BY_JIG => BY_GUIDE_ENDS,
+            BY_GUIDE_ENDS => BY_JIG,
+            _ => zeros.left_out(),
+        };
+        Ok(Self::on(index(name)?, left_out))
+    }
+
+    fn on(first: usize, left_out: &str) -> Self {
+        let steps = STEPS.iter().skip(first);
+        Self {
+            steps: steps.filter(|step| step.name != left_out).collect(),
+            is_resumed: first > 0,
             is_loaded_anew: false,
-        })
+        }
     }
 
     /// A step alone, and keeping what it finds.
@@ -192,12 +229,11 @@ mod tests {
     fn steps_are_chosen_by_their_names() {
         assert_eq!(names(Chosen::only("friction")), ["friction", "keep"]);
         assert_eq!(
-            names(Chosen::from("verification")),
+            names(Chosen::from("verification", ZerosBy::Jig)),
             ["verification", "forces", "keep"]
         );
-        assert_eq!(names(Chosen::from("wiring")).len(), STEPS.len());
         assert_eq!(
-            Chosen::from("tuning").err(),
+            Chosen::from("tuning", ZerosBy::Jig).err(),
             Some(ChoiceError::NotFirst {
                 name: "tuning".to_owned(),
                 begin: "identification"
@@ -209,6 +245,23 @@ mod tests {
                 "step `nudges` needs what the one before it finds: begin with `wiring`".to_owned()
             )
         );
-        assert!(Chosen::from("nothing").is_err());
+        assert!(Chosen::from("nothing", ZerosBy::Jig).is_err());
+    }
+    #[test]
+    fn zeros_are_found_in_one_way() {
+        for (zeros, used, left_out) in [
+            (ZerosBy::Jig, "zeros", "ends"),
+            (ZerosBy::GuideEnds, "ends", "zeros"),
+        ] {
+            let all = names(Ok(Chosen::all(zeros)));
+            assert_eq!(all.len(), STEPS.len() - 1);
+            assert!(all.contains(&used) && !all.contains(&left_out));
+            assert_eq!(names(Chosen::from("wiring", zeros)), all);
+            let later = names(Chosen::from("ring servo", zeros));
+            assert_eq!(later[..3], ["ring servo", used, "reference"]);
+            // The step that is asked for itself.
+            let asked = names(Chosen::from(left_out, zeros));
+            assert_eq!(asked[..2], [left_out, "reference"]);
+        }
     }
 }

@@ -15,6 +15,7 @@
 //! | `measured_loop` | a loop as measured, its margins and its plots |
 //! | `by_hand` | what other gains would make of the loops |
 //! | `sines` | multisines on one motor after the other |
+//! | `touch` | a ring moved alone until a guide is at its end |
 //! | `steps/` | a file each |
 //! | `results` | all of it, as numbers, and what has changed since the last time |
 //! | `report` | all of it, as one page |
@@ -33,10 +34,11 @@ mod results;
 mod servo_gains;
 mod sines;
 mod steps;
+mod touch;
 
 pub use backup::Backup;
 pub use by_hand::{GainsError, MOST_SENSITIVITY, Predicted, PutError, Tunable, Worth};
-pub use chosen::{ChoiceError, Chosen};
+pub use chosen::{ChoiceError, Chosen, ZerosBy};
 pub use found::{CommissionError, Failure, Finding, Found, Number, Plot, Table};
 pub use report::page;
 pub use results::{Change, Conditions, Results, ResultsError, StepResult};
@@ -49,6 +51,7 @@ use crate::settings::bring_back;
 pub(crate) use bench::Bench;
 use known::Known;
 use std::time::Duration;
+pub(crate) use touch::{Before, Touch};
 
 /// A machine with its controller, and somebody beside it.
 pub trait Machine {

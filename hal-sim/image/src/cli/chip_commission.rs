@@ -12,7 +12,9 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use desk::commission::{Attended, Backup, Chosen, Conditions, Done, Machine, Ran, Task};
+use desk::commission::{
+    Attended, Backup, Chosen, Conditions, Done, Finding, Machine, Ran, Task, ZerosBy,
+};
 use desk::commission::{page, run as run_steps};
 use desk::date::today;
 use desk::line::Endpoint;
@@ -36,6 +38,8 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// The last step, and how the emulated chip answers it.
 const KEEP: &str = "keep";
 const NOT_KEPT: u16 = 4001;
+const NOT_KEPT_SAID: &str =
+    "the emulated flash keeps nothing, as expected; what is in force was read";
 /// Moves of the chip that keeps what was found.
 const VERIFICATION: &str = "verification";
 
@@ -50,7 +54,7 @@ pub(super) fn run(arguments: &ChipCommission) -> Result<ExitCode, CliError> {
         uncommissioned: true,
         ..RunOptions::default()
     };
-    let (done, found) = on_chip(&options, None, &Chosen::all())?;
+    let (done, found) = on_chip(&options, None, &Chosen::all(ZerosBy::Jig))?;
     let conditions = Conditions {
         machine: format!("unknown machine {}, emulated chip", arguments.unknown),
         date: today(),
@@ -115,9 +119,16 @@ fn on_chip(
     });
     stop.store(true, Ordering::Relaxed);
     let served = chip.join();
-    let (Ran { done, .. }, in_force) = ran?;
+    let (Ran { mut done, .. }, in_force) = ran?;
     served.map_err(|_| CliError::Fault("the emulator has panicked".to_owned()))??;
-    let kept = in_force.filter(|_| done.last().is_some_and(|done| done.step.name == KEEP));
+    let last = done.last_mut().filter(|done| done.step.name == KEEP);
+    let kept = last.and_then(|keep| {
+        let in_force = in_force?;
+        // Refused as expected: the file is what is kept.
+        keep.failure = None;
+        keep.found.push(Finding::told(NOT_KEPT_SAID, SETTINGS));
+        Some(in_force)
+    });
     Ok((done, kept))
 }
 
@@ -136,7 +147,7 @@ impl Machine for Unkept {
         if let Err(RecordError::Refused { code: NOT_KEPT, .. }) = &answer
             && line.starts_with("WPA")
         {
-            println!("  the emulated flash keeps nothing, as expected; what is in force was read");
+            println!("  {NOT_KEPT_SAID}");
         }
         answer
     }

@@ -37,7 +37,7 @@ impl Beside {
                 SetUp::Beams(Interferometer::set_up(noise, random), instrument.kit)
             }
             Kit::Xy => SetUp::Target(Target::set_up(noise, random)),
-            Kit::Camera | Kit::Camera2 => {
+            Kit::Camera | Kit::Camera2 | Kit::Balls => {
                 SetUp::Camera(Camera::set_up(instrument, radius_m, random))
             }
             Kit::Ends => return None,

@@ -1,7 +1,7 @@
 //! A camera at fixed places over a plate of marks on the platform: the stage brings a mark under it, and it tells the little that is
-//! left. Its own scale, distortion and turn matter no more, and the plate is known to nobody.
+//! left. Its own scale, distortion and turn matter no more, and the plate is known to nobody. Two gauges across each other do the same with balls.
 
-use calibration::{Instrument, Seen, Visit};
+use calibration::{Instrument, Kit, Seen, Visit};
 use nalgebra::{Rotation2, Vector2};
 
 use super::interferometer::noisy;
@@ -21,8 +21,9 @@ pub struct Camera {
 
 /// How well the stage finds a mark before it looks, m.
 const FOUND_M: f64 = 1e-6;
-/// Half the width of the camera's picture, m; and its scale, turn and distortion.
+/// Half the width of the camera's picture, and of what gauges reach, m; and scale, turn and distortion of either.
 const FIELD_M: f64 = 5e-3;
+const GAUGES_M: f64 = 2e-3;
 const OPTICS_SCALE: f64 = 1.02;
 const OPTICS_RAD: f64 = 10e-3;
 const OPTICS_DISTORTION: f64 = 0.01;
@@ -89,7 +90,7 @@ impl Camera {
     }
 
     /// Looks at a platform at a pose (m, m, rad), through optics whose scale, turn and distortion nobody has measured. `None`: the mark
-    /// is not in the picture.
+    /// is not in the picture, or the ball out of the gauges' reach.
     pub fn look(
         &self,
         (mark, camera): (usize, usize),
@@ -100,7 +101,12 @@ impl Camera {
         let place_m =
             Vector2::new(pose[0], pose[1]) + Rotation2::new(pose[2]) * self.marks_m.get(mark)?;
         let off_m = place_m - self.cameras_m.get(camera)?;
-        let share = off_m.norm() / FIELD_M;
+        let reach_m = if self.instrument.kit == Kit::Balls {
+            GAUGES_M
+        } else {
+            FIELD_M
+        };
+        let share = off_m.norm() / reach_m;
         if share > 1.0 {
             return None;
         }

@@ -49,7 +49,7 @@ pub fn survey(
             let visit = |stop: &Stop| target.visit(machine, in_m(stop.pose), random);
             stops.iter().map(visit).collect()
         }
-        Kit::Camera | Kit::Camera2 => {
+        Kit::Camera | Kit::Camera2 | Kit::Balls => {
             let camera = Camera::set_up(instrument, radius_m, random);
             let visit = |stop: &Stop| {
                 let At::Mark {

@@ -2,7 +2,7 @@
 //!
 //! `SEEDS=24` takes machines 1 to 24 in place of 1 to 4, `SEEDS=9-16` those. Each machine is told as it is done, and kept in a file
 //! (`RESULTS=FILE`): one that stands there is not run again, so that a long table may be made in pieces. A machine is run again once its line is
-//! taken out of it. `TABLE=1` runs none, and prints the table of those that there are.
+//! taken out of it. `TABLE=1` runs none, and prints the table of those that there are. `ZEROS=ends` takes the guides' ends in place of the jig.
 //!
 //! | file | idea |
 //! |---|---|
@@ -13,7 +13,7 @@
 mod judged;
 mod rows;
 
-use desk::commission::{Chosen, Done, Machine, Task, run};
+use desk::commission::{Chosen, Done, Machine, Task, ZerosBy, run};
 use desk::record::RecordError;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::unknown;
@@ -49,6 +49,10 @@ fn seeds() -> RangeInclusive<u64> {
     let (first, last) = text.split_once('-').unwrap_or(("1", &text));
     let number = |text: &str| text.trim().parse().expect("SEEDS is 24 or 9-16");
     number(first)..=number(last)
+}
+
+fn zeros() -> ZerosBy {
+    ZerosBy::new(std::env::var("ZEROS").is_ok_and(|text| text == "ends"))
 }
 
 /// A machine and its person, who counts what is asked.
@@ -87,7 +91,7 @@ fn commissioned(seed: u64) -> Row {
         ),
         questions: 0,
     };
-    let done = run(&mut counted, &Chosen::all(), &mut |done| {
+    let done = run(&mut counted, &Chosen::all(zeros()), &mut |done| {
         warmth.note(done.step.name);
     });
     let done = done

@@ -13,7 +13,7 @@ use super::view::endpoint;
 use crate::attended::SimulatedMachine;
 use desk::commission::{
     Attended, Backup, Change, Chosen, Conditions, DoTask, Done, Machine, Results, STEPS, Task,
-    page, run as run_steps,
+    ZerosBy, page, run as run_steps,
 };
 use desk::date;
 use drawing::ReportError;
@@ -37,10 +37,11 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
     if arguments.undo {
         return undo(&arguments.on);
     }
+    let zeros = ZerosBy::new(arguments.without_jig);
     let chosen = match (&arguments.from, &arguments.only) {
-        (Some(name), _) => Chosen::from(name)?,
+        (Some(name), _) => Chosen::from(name, zeros)?,
         (_, Some(name)) => Chosen::only(name)?,
-        _ => Chosen::all(),
+        _ => Chosen::all(zeros),
     };
     let answer = if arguments.yes {
         || Ok(())

@@ -78,7 +78,7 @@ fn noise(made: &Made) -> String {
     match made.kit {
         Kit::Xyt => format!("{length} and {angle}"),
         Kit::Theta => angle,
-        Kit::Xy | Kit::Camera | Kit::Camera2 | Kit::Ends => length,
+        Kit::Xy | Kit::Camera | Kit::Camera2 | Kit::Balls | Kit::Ends => length,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The steps, in the order in which they are run: first what puts no power on a motor.
 
+mod ends;
 mod forces;
 mod friction;
 mod gains;
@@ -55,6 +56,11 @@ pub static STEPS: &[Step] = &[
         name: "zeros",
         about: "the platform in its jig: what each encoder reads at pivot angle 0",
         run: zeros::run,
+    },
+    Step {
+        name: "ends",
+        about: "in place of the jig: each ring moved until a guide is at its end, both ways, twice; the encoders' zeros from where that was",
+        run: ends::run,
     },
     Step {
         name: "reference",

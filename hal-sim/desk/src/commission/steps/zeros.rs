@@ -23,24 +23,8 @@ pub(super) fn run(
     bench.request(Task::PutOnJig)?;
     bench.delay(0.2)?;
     let angles = read(bench)?;
-    for (pivot, angle) in angles.into_iter().enumerate() {
-        let target = TAU * pivot as f64 / AXES as f64;
-        let sign = if known.reversed_at_port[known.ports[pivot]] {
-            -1.0
-        } else {
-            1.0
-        };
-        let now = bench.parameter(id::ENCODER_ZERO + pivot as u32)?;
-        let zero = (now + sign * (angle - target) / TAU * COUNTS)
-            .round()
-            .rem_euclid(COUNTS);
-        bench.set(&[(id::ENCODER_ZERO + pivot as u32, zero)])?;
-        found.number(format!("zero of encoder {}", pivot + 1), zero, "counts");
-        found.push(Finding::told(
-            format!("zero of encoder {}", pivot + 1),
-            format!("{zero:.0} counts"),
-        ));
-    }
+    let too_large = std::array::from_fn(|pivot| angles[pivot] - TAU * pivot as f64 / AXES as f64);
+    set(bench, known, found, too_large)?;
     bench.delay(0.1)?;
     let angles = read(bench)?;
     let left = (0..AXES)
@@ -56,6 +40,33 @@ pub(super) fn run(
         left < MOST_LEFT_RAD,
         "the platform has moved in the jig: put it in again",
     ));
+    Ok(())
+}
+
+/// Sets the zeros by what each angle is told too large by, rad.
+pub(super) fn set(
+    bench: &mut Bench<'_>,
+    known: &Known,
+    found: &mut Found,
+    too_large_rad: [f64; AXES],
+) -> Result<(), CommissionError> {
+    for (pivot, too_large_rad) in too_large_rad.into_iter().enumerate() {
+        let sign = if known.reversed_at_port[known.ports[pivot]] {
+            -1.0
+        } else {
+            1.0
+        };
+        let now = bench.parameter(id::ENCODER_ZERO + pivot as u32)?;
+        let zero = (now + sign * too_large_rad / TAU * COUNTS)
+            .round()
+            .rem_euclid(COUNTS);
+        bench.set(&[(id::ENCODER_ZERO + pivot as u32, zero)])?;
+        found.number(format!("zero of encoder {}", pivot + 1), zero, "counts");
+        found.push(Finding::told(
+            format!("zero of encoder {}", pivot + 1),
+            format!("{zero:.0} counts"),
+        ));
+    }
     Ok(())
 }
 

@@ -56,7 +56,8 @@ pub(in super::super) struct CalibratedMachine {
 pub(in super::super) struct CalibrateMeasure {
     #[command(flatten)]
     pub(in super::super) stage: CalibratedMachine,
-    /// The instrument: xyt, xy, theta, camera or camera2.
+    /// The instrument: xyt, xy, theta, camera, camera2 or balls; or ends, which is none: rings are driven against the ends of guides, one at a time,
+    /// with the servo off.
     #[arg(long)]
     pub(in super::super) kit: Kit,
     #[command(flatten)]
@@ -65,8 +66,8 @@ pub(in super::super) struct CalibrateMeasure {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
     pub(in super::super) poses: usize,
     /// Command that reads the instrument: it is run in a shell for each pose, gets x_mm y_mm theta_deg on standard input (for cameras
-    /// mark_x_mm mark_y_mm camera_x_mm camera_y_mm besides) and answers x_mm y_mm theta_deg, or x_mm y_mm, or theta_deg, or of a mark
-    /// off_x_um off_y_um, in one line [default: the simulated instrument beside a simulated machine].
+    /// mark_x_mm mark_y_mm camera_x_mm camera_y_mm besides, for balls the ball's place and the gauges') and answers x_mm y_mm theta_deg, or x_mm
+    /// y_mm, or theta_deg, or of a mark or ball off_x_um off_y_um, in one line [default: the simulated instrument beside a simulated machine].
     #[arg(long, value_name = "COMMAND")]
     pub(in super::super) reader: Option<String>,
     /// What was measured, as CSV, for `tripivot calibrate fit`. Each row is kept as it is measured: the same command again goes on
@@ -98,7 +99,7 @@ pub(in super::super) struct CalibrateVerify {
     pub(in super::super) file: PathBuf,
     #[command(flatten)]
     pub(in super::super) stage: CalibratedMachine,
-    /// The instrument: xyt, xy, theta, camera or camera2 [default: that of the calibration].
+    /// The instrument: xyt, xy, theta, camera, camera2 or balls [default: that of the calibration].
     #[arg(long)]
     pub(in super::super) kit: Option<Kit>,
     /// Standard deviation of one measurement of x or y [default: as in the calibration].
@@ -116,7 +117,8 @@ pub(in super::super) struct CalibrateVerify {
     /// Tell the result as one JSON document on standard output.
     ///
     /// Fields: kit, visits; xy_um and theta_urad, null where the instrument does not see it (seen, noise, of_stage, predicted: each rms;
-    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); as_predicted (from, to), verdict; poses
+    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); as_predicted (from, to), scale (of
+    /// the stage over the instrument's, taken out, where the calibration does not know it; else null), verdict; poses
     /// (commanded_mm_deg, off_um_urad, as_drawn_um_urad). `tripivot calibrate report` takes it.
     #[arg(long)]
     pub(in super::super) json: bool,
@@ -170,7 +172,7 @@ pub(in super::super) struct NoiseArguments {
 #[derive(Args, Clone, Debug)]
 pub(in super::super) struct CalibratePlan {
     /// The instrument: xyt (x, y and theta), xy (x and y of one target), theta, camera (over a plate of unknown marks), camera2 (the
-    /// same at two places), ends (none: pivots are driven against the ends of their guides).
+    /// same at two places), balls (two gauges across each other against three balls, at two places), ends (none: pivots are driven against the ends of their guides).
     #[arg(long)]
     pub(in super::super) kit: Kit,
     #[command(flatten)]
@@ -179,7 +181,7 @@ pub(in super::super) struct CalibratePlan {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
     pub(in super::super) poses: usize,
     /// Write the poses into this file, as CSV, the most telling first: x_mm, y_mm, theta_deg; for cameras the mark in the platform frame
-    /// and the camera in the base frame besides, for ends the guide and where on it the end is.
+    /// and the camera in the base frame besides (for balls ball and gauges), for ends the guide and where on it the end is.
     #[arg(long, value_name = "FILE")]
     pub(in super::super) out: Option<PathBuf>,
     /// Tell the result as one JSON document on standard output.
@@ -195,7 +197,7 @@ pub(in super::super) struct CalibratePlan {
 pub(in super::super) struct CalibrateFit {
     /// What was measured, as CSV. The first row names the columns: m1_deg,m2_deg,m3_deg (readings of the encoders), then
     /// x_mm,y_mm,theta_deg or x_mm,y_mm or theta_deg or mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm,off_x_um,off_y_um
-    /// or guide,end_mm.
+    /// or ball_x_mm,ball_y_mm,gauge_x_mm,gauge_y_mm,off_x_um,off_y_um or guide,end_mm.
     pub(in super::super) file: PathBuf,
     #[command(flatten)]
     pub(in super::super) noise: NoiseArguments,

@@ -17,6 +17,10 @@ pub(in super::super) struct Commission {
     /// Run this step alone, as after a repair, and keep what it finds.
     #[arg(long, value_name = "STEP", conflicts_with = "list")]
     pub(in super::super) only: Option<String>,
+    /// Find the encoders' zeros without a jig: each ring is moved until a guide is at its end (step `ends` in place of `zeros`). Two minutes more,
+    /// and x is where pivot 1's encoder reads 0.
+    #[arg(long, conflicts_with_all = ["only", "list", "undo"])]
+    pub(in super::super) without_jig: bool,
     /// Do not wait for Enter: the platform is in its jig already. For a step alone, since in all of them it is turned by hand before.
     #[arg(long, requires = "only")]
     pub(in super::super) yes: bool,

@@ -15,11 +15,12 @@ use desk::calibrate::report::{Report, Truth, before_and_after, page};
 use desk::calibrate::{
     Evidence, Reader, Told, Verdict, Wanted, Way, apply, measure, serial, verify, with_references,
 };
-use desk::commission::{Chosen, run as run_steps};
+use desk::commission::{Chosen, ZerosBy, run as run_steps};
 use drawing::{make_folder, write_file, write_png};
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::instruments::Beside;
 use hal_sim::machine::unknown;
+use hal_sim::rig;
 use kinematics::Geometry;
 
 use super::super::FAILED;
@@ -71,7 +72,8 @@ pub(super) fn run(arguments: &CalibrateDemo) -> Result<ExitCode, CliError> {
     } else if !commissioned(&stage, &settings, arguments.unknown)? {
         return Ok(ExitCode::from(FAILED));
     }
-    let mut machine = SimulatedMachine::told(&stage, SettingsFlash::open(&settings)?);
+    let mut machine =
+        SimulatedMachine::told(&stage, SettingsFlash::open(&settings)?, rig::Told::Machine);
     say(
         "the unmeasured plate and the camera are set up; before that, true poses against commanded ones as drawn\n",
     )?;
@@ -161,7 +163,7 @@ fn commissioned(stage: &StageParameters, settings: &Path, seed: u64) -> Result<b
     }
     let mut machine = SimulatedMachine::new(stage, SettingsFlash::open(settings)?);
     let mut written = Ok(ExitCode::SUCCESS);
-    let ran = run_steps(&mut machine, &Chosen::all(), &mut |done| {
+    let ran = run_steps(&mut machine, &Chosen::all(ZerosBy::Jig), &mut |done| {
         let verdict = done
             .failure
             .as_ref()
@@ -194,6 +196,7 @@ fn compared(
         stops: &stops,
         first: 0,
         radius_mm: Geometry::REFERENCE.radius_mm,
+        ends: &[],
         is_from_both_sides: false,
     };
     let mut pairs = Vec::new();
@@ -218,7 +221,7 @@ fn reader(
 ) -> Result<Simulated, CliError> {
     let beside = Beside::set_up(instrument, stage.plant.track_radius_m, seed);
     Ok(Simulated {
-        instrument: beside.ok_or(CalibrateError::Ends)?,
+        instrument: beside.ok_or(CalibrateError::NothingToRead)?,
         true_pose: TruePose::new(machine.true_pose(), &stage.wiring),
     })
 }
@@ -248,6 +251,7 @@ fn measured(
         stops: &stops,
         first: 0,
         radius_mm: Geometry::REFERENCE.radius_mm,
+        ends: &[],
         is_from_both_sides: false,
     };
     measure(machine, reader, &way, &mut |measured| {

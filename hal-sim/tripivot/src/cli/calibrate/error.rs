@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use calibration::FitError;
 use calibration::file::FileError;
 use calibration::table::TableError;
+use desk::calibrate::VerifyError;
 
 /// Why there is no plan or no calibration.
 #[derive(Debug, thiserror::Error)]
@@ -34,7 +35,7 @@ pub(in crate::cli) enum CalibrateError {
     #[error(transparent)]
     Apply(#[from] desk::calibrate::ApplyError),
     #[error(transparent)]
-    Verify(#[from] desk::calibrate::VerifyError),
+    Verify(#[from] VerifyError),
     #[error("{}: no verification as `tripivot calibrate verify --json` tells it: {source}", path.display())]
     Verified {
         path: PathBuf,
@@ -49,8 +50,8 @@ pub(in crate::cli) enum CalibrateError {
         found: String,
         wanted: String,
     },
-    #[error("--kit ends: `measure` reads instruments, and ends of guides are touched without one")]
-    Ends,
+    #[error("--kit ends: ends of guides are touched, and no instrument is read")]
+    NothingToRead,
     #[error(
         "--reader: what reads the instrument? Only a simulated machine has a simulated one beside it"
     )]
@@ -62,6 +63,9 @@ pub(in crate::cli) enum CalibrateError {
 impl CalibrateError {
     /// Whether the request was sound and what was measured is not.
     pub(in crate::cli) const fn is_failure(&self) -> bool {
+        if let Self::Verify(VerifyError::Ends) = self {
+            return false;
+        }
         matches!(
             self,
             Self::Fit { .. }

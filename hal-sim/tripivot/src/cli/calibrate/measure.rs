@@ -14,6 +14,7 @@ use desk::commission::{Attended, Machine};
 use desk::date::today;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::instruments::Beside;
+use hal_sim::rig::Told;
 use kinematics::Geometry;
 
 use super::super::arguments::{CalibrateMeasure, CalibratedMachine};
@@ -21,15 +22,15 @@ use super::super::commission::{by_hand, wait_for_enter};
 use super::super::error::CliError;
 use super::super::view::endpoint;
 use super::error::CalibrateError;
-use super::reader::{Asked, Simulated, TruePose};
+use super::reader::{Asked, NoInstrument, Simulated, TruePose};
 use super::{line, nm, noise, read};
 
 /// Begins the line that says what is measured.
 const BEGUN: &str = "# tripivot calibrate measure: ";
 
 pub(super) fn run(arguments: &CalibrateMeasure) -> Result<ExitCode, CliError> {
-    if arguments.kit == Kit::Ends {
-        return Err(CalibrateError::Ends.into());
+    if arguments.kit == Kit::Ends && arguments.reader.is_some() {
+        return Err(CalibrateError::NothingToRead.into());
     }
     let instrument = Instrument::new(arguments.kit, noise(&arguments.noise));
     let planned = plan(&instrument, arguments.poses).ok_or(CalibrateError::Lost)?;
@@ -49,6 +50,7 @@ pub(super) fn run(arguments: &CalibrateMeasure) -> Result<ExitCode, CliError> {
         stops: &stops,
         first: kept,
         radius_mm: Geometry::REFERENCE.radius_mm,
+        ends: &instrument.ends,
         is_from_both_sides: false,
     };
     measure(machine.as_mut(), reader.as_mut(), &way, &mut |measured| {
@@ -90,7 +92,7 @@ fn simulated(stage: &CalibratedMachine) -> Result<SimulatedMachine, CliError> {
         Some(path) => SettingsFlash::open(path)?,
         None => SettingsFlash::in_memory(),
     };
-    Ok(SimulatedMachine::told(&parameters, flash))
+    Ok(SimulatedMachine::told(&parameters, flash, Told::Machine))
 }
 
 type Opened = (Box<dyn Machine>, Box<dyn Reader>);
@@ -108,6 +110,9 @@ pub(super) fn opened(
         };
         return Ok((machine(stage)?, Box::new(reader)));
     }
+    if instrument.kit == Kit::Ends {
+        return Ok((machine(stage)?, Box::new(NoInstrument)));
+    }
     if !stage.machine.is_simulated() {
         return Err(CalibrateError::NoReader.into());
     }
@@ -115,7 +120,8 @@ pub(super) fn opened(
     let radius_m = built.plant.track_radius_m;
     let machine = simulated(stage)?;
     let reader = Simulated {
-        instrument: Beside::set_up(instrument, radius_m, stage.seed).ok_or(CalibrateError::Ends)?,
+        instrument: Beside::set_up(instrument, radius_m, stage.seed)
+            .ok_or(CalibrateError::NothingToRead)?,
         true_pose: TruePose::new(machine.true_pose(), &built.wiring),
     };
     Ok((Box::new(machine), Box::new(reader)))

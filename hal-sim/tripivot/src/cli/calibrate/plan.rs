@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use calibration::plan::{At, Stop};
-use calibration::{Instrument, Plan, plan};
+use calibration::{Instrument, Kit, Plan, plan};
 use drawing::write_file;
 use serde::Serialize;
 
@@ -129,6 +129,9 @@ fn text(document: &Document) -> String {
 fn table(instrument: &Instrument, stops: &[Stop]) -> String {
     let radius_mm = Geometry::REFERENCE.radius_mm;
     let more = match stops.first().map(|stop| stop.at) {
+        Some(At::Mark { .. }) if instrument.kit == Kit::Balls => {
+            ",ball_x_mm,ball_y_mm,gauge_x_mm,gauge_y_mm"
+        }
         Some(At::Mark { .. }) => ",mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm",
         Some(At::End { .. }) => ",guide,end_mm",
         _ => "",

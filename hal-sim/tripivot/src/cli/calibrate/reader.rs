@@ -79,12 +79,21 @@ impl Asked {
             }
             (Kit::Xy, _, &[x, y]) => Some(Seen::Place([radii(x), radii(y)])),
             (Kit::Theta, _, &[theta]) => Some(Seen::Turn(theta.to_radians())),
-            (Kit::Camera | Kit::Camera2, At::Mark { mark, camera }, &[x_um, y_um]) => {
+            (Kit::Camera | Kit::Camera2 | Kit::Balls, At::Mark { mark, camera }, &[x_um, y_um]) => {
                 let off = [radii(x_um / UM_PER_MM), radii(y_um / UM_PER_MM)];
                 Some(Seen::Mark { mark, camera, off })
             }
             _ => None,
         }
+    }
+}
+
+/// What ends of guides need.
+pub(super) struct NoInstrument;
+
+impl Reader for NoInstrument {
+    fn read(&mut self, _: &Wanted) -> Result<Seen, String> {
+        Err("there is no instrument to read".to_owned())
     }
 }
 
@@ -134,6 +143,9 @@ impl Reader for Simulated {
         (self
             .instrument
             .read(wanted.at, self.true_pose.get(wanted.pose[2]), wanted.visit))
-        .ok_or_else(|| "the mark is not in the camera's picture".to_owned())
+        .ok_or_else(|| {
+            "the mark is not in the camera's picture, or the ball out of the gauges' reach"
+                .to_owned()
+        })
     }
 }

@@ -131,6 +131,10 @@ pub(super) fn text(document: &Told) -> String {
             format!("{:.3} {unit} rms without it", kind.as_drawn),
         );
     }
+    if let Some(scale) = document.scale {
+        let told = format!("{scale:.7} of the instrument's, taken out: the calibration knows none");
+        text += &line("scale", &told);
+    }
     let verdict = match &*document.verdict {
         "worse than predicted" | "worse than without it" => format!(
             "{}: another machine's, damaged, out of date, or the instrument is not what was said; `tripivot calibrate undo` takes it out of force",

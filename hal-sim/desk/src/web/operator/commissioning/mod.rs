@@ -54,6 +54,9 @@ pub(in crate::web) enum Order {
         from: Option<String>,
         /// Periods of the encoders' scale in a turn, where they are known.
         scale_periods: Option<u32>,
+        /// Whether the encoders' zeros come from the guides' ends.
+        #[serde(default)]
+        without_jig: bool,
     },
     /// One step, after a repair.
     Only {

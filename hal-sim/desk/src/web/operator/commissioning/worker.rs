@@ -11,7 +11,7 @@ use super::machine::PageMachine;
 use super::status::{Told, Tried, Tuning, places};
 use super::{Order, Ordered, Person};
 use crate::commission::{
-    Backup, Chosen, Conditions, Done, Machine, Numbers, Ran, Results, Tunable, page, run,
+    Backup, Chosen, Conditions, Done, Machine, Numbers, Ran, Results, Tunable, ZerosBy, page, run,
 };
 use crate::date::today;
 use crate::record::RecordError;
@@ -61,9 +61,13 @@ impl Worker {
     fn carry_out(&mut self, Ordered { order, key, .. }: &Ordered, what: &'static str) -> Came {
         let chosen = match order {
             Order::Commission {
-                from: Some(from), ..
-            } => Chosen::from(from),
-            Order::Commission { from: None, .. } => Ok(Chosen::all()),
+                from, without_jig, ..
+            } => {
+                let zeros = ZerosBy::new(*without_jig);
+                let all = || Ok(Chosen::all(zeros));
+                from.as_ref()
+                    .map_or_else(all, |from| Chosen::from(from, zeros))
+            }
             Order::Only { step, .. } => Chosen::only(step),
             Order::Tune => Ok(Chosen::tune()),
             Order::Measure => {
