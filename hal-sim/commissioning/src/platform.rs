@@ -56,14 +56,25 @@ pub struct Platform {
     pub drive_inertia: f64,
     /// Friction of a ring with its motor, N m and N m s/rad: mean of the three.
     pub friction: [f64; 2],
-    /// Friction of a carriage along its guide, N.
-    pub guide_n: f64,
+    /// Friction of the carriages along their guides.
+    pub carriages: Carriages,
     /// Standard deviations of mass, inertia, moments and drive inertia, in units of theirs.
     pub deviations: [f64; 5],
     /// What is left of the torques, over them.
     pub residual: f64,
     /// Condition of the equations, every unknown counted in its own size: what noise and what the model leaves out may grow by.
     pub condition: f64,
+}
+
+/// Friction of a carriage along its guide, the mean of three.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Carriages {
+    /// Coulomb's, N.
+    pub coulomb_n: f64,
+    /// Its standard deviation, N.
+    pub deviation_n: f64,
+    /// What grows with the rate, N s/m.
+    pub viscous_n_s_m: f64,
 }
 
 /// Why nothing follows from a tour.
@@ -105,6 +116,9 @@ pub const MOST_CONDITION: f64 = 100.0;
 /// More that is left is refused.
 pub const MOST_RESIDUAL: f64 = 0.25;
 const UNKNOWNS: usize = 19;
+/// Friction along a guide times the track's radius: N m, and N m s.
+const GUIDE: usize = 11;
+const GUIDE_VISCOUS: usize = 16;
 /// The first of those that say how much more a torque is than it is told, of rings 2 and 3 beside ring 1.
 const GAINS: usize = 17;
 
@@ -135,7 +149,7 @@ pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError
             numbers[5..8].iter().sum::<f64>() / 3.0,
             numbers[8..11].iter().sum::<f64>() / 3.0,
         ],
-        guide_n: numbers[11] / radius,
+        carriages: fit.carriages(radius),
         deviations: [
             deviations[0] / (radius * radius),
             deviations[1],
@@ -157,6 +171,17 @@ pub(crate) struct Fit {
     /// Sum of the squares of the torques.
     torques_squared: f64,
     condition: f64,
+}
+
+impl Fit {
+    /// Friction of the carriages, with the track's radius in m.
+    pub fn carriages(&self, radius_m: f64) -> Carriages {
+        Carriages {
+            coulomb_n: self.numbers[GUIDE] / radius_m,
+            deviation_n: self.deviations[GUIDE] / radius_m,
+            viscous_n_s_m: self.numbers[GUIDE_VISCOUS] / (radius_m * radius_m),
+        }
+    }
 }
 
 /// Rows that err as much as one that errs by itself: neighbours are smoothed with the same window.
@@ -379,10 +404,10 @@ fn equations(
         }
         row[5 + i] = rubs[i];
         row[8 + i] = rates[i];
-        row[11] = guide[i];
+        row[GUIDE] = guide[i];
         row[12] = cable[i];
         row[13 + i] = 1.0;
-        row[16] = guide_viscous[i];
+        row[GUIDE_VISCOUS] = guide_viscous[i];
     }
     Some((
         rows,

@@ -7,7 +7,7 @@
 //! Errors of all three zeros alike turn the whole machine, and do not show. What is found are their differences from their mean.
 
 use super::least_squares::{Minimum, minimise};
-use super::platform::{Evaluation, Gains, PlatformError, Tour, fit};
+use super::platform::{Carriages, Evaluation, Gains, PlatformError, Tour, fit};
 use nalgebra::{DVector, Matrix2, Vector2};
 use std::f64::consts::TAU;
 
@@ -18,6 +18,8 @@ pub struct ZeroErrors {
     pub too_large_rad: [f64; 3],
     /// Standard deviation of the one that is known worst, as far as what is left over says, rad.
     pub deviation_rad: f64,
+    /// What the carriages rub, with the zeros as they were found.
+    pub carriages: Carriages,
 }
 
 /// Steps of the search.
@@ -42,9 +44,14 @@ pub fn zero_errors(tours: &[Tour], how: &Evaluation) -> Result<ZeroErrors, Platf
     let found = minimise(&DVector::zeros(2), STEPS, left).ok_or(PlatformError::Condition {
         condition: f64::INFINITY,
     })?;
+    let corrected: Vec<_> = tours
+        .iter()
+        .map(|tour| corrected(tour, &found.at))
+        .collect();
     Ok(ZeroErrors {
         too_large_rad: apart(&found.at),
         deviation_rad: deviation(&found, left),
+        carriages: fit(&corrected, how, Gains::Sought)?.carriages(how.track_radius_m),
     })
 }
 

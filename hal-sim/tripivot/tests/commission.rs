@@ -1,12 +1,11 @@
 //! `tripivot commission` on machines as workshops build them: those that are sound are brought up, the others refused where it shows.
 
-use desk::commission::{Backup, Chosen, GainsError, Machine, PutError, run};
+use desk::commission::{Backup, Machine};
 use firmware::control::servo::BorneLimits;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{COUNTS_PER_TURN, SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
-use hal_sim::rig::run::{RunOptions, machine_settings, stage_parameters};
 use std::f64::consts::TAU;
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
@@ -105,6 +104,7 @@ fn a_sound_machine_is_brought_up() {
 #[test]
 fn a_sound_machine_whose_friction_varies_over_a_turn_is_brought_up_without_a_jig() {
     let folder = brings_up(19, &["--without-jig"], &WITHOUT_JIG);
+    a_new_payload_is_fitted_or_leaves_everything_as_it_was(19, &folder);
     let _ = std::fs::remove_dir_all(&folder);
 }
 
@@ -121,6 +121,7 @@ fn brings_up(seed: u64, how: &[&str], most: &Most) -> PathBuf {
     finds_the_motors(&machine, &told, [MOST_CONSTANT_ERROR, MOST_FRICTION_ERROR]);
     finds_errors_within_periods(&machine, &told, most.left_within_periods_urad);
     finds_what_is_moved(&machine, &told);
+    finds_the_guides(&machine, &told);
     finds_gains(&told);
     ends_in_time(&told, most.seconds);
     finds_limits(&machine, &told);
@@ -262,6 +263,27 @@ fn finds_what_is_moved(machine: &StageParameters, told: &str) {
 }
 
 /// Margins as they were measured with the gains that were found; and the sensitivity at 30 Hz, where the gains before were sound too, is less.
+/// Figures of the machines tried here, and a tenth more; 15 % is what is asked for.
+fn finds_the_guides(machine: &StageParameters, told: &str) {
+    let plant = &machine.plant;
+    let friction = error(
+        told,
+        "friction of a carriage along its guide, mean of three",
+        plant.guide_friction.coulomb,
+    );
+    let stiffness = error(
+        told,
+        "stiffness across a guide",
+        plant.guide_stiffness_n_m * 1e-6,
+    );
+    println!(
+        "friction of a carriage: {:+.1} %, stiffness across a guide: {:+.1} %",
+        friction * 100.0,
+        stiffness * 100.0
+    );
+    assert!(friction.abs() < 0.0147 && stiffness.abs() < 0.008, "{told}");
+}
+
 fn finds_gains(told: &str) {
     let (mut sound, mut better) = (true, false);
     for place in ["in the middle", "at X 70 Y 0"] {
@@ -364,16 +386,20 @@ fn is_as_before(machine: &StageParameters, folder: &Path) {
 }
 
 /// Half a kilogramme more: fitted, or refused with a reason and as it was before.
-#[test]
-fn a_new_payload_is_fitted_or_leaves_everything_as_it_was() {
-    let mut machine = unknown(19);
-    let (output, folder) = commission("payload", &["--unknown", "19"]);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+fn a_new_payload_is_fitted_or_leaves_everything_as_it_was(seed: u64, folder: &Path) {
+    let mut machine = unknown(seed);
     machine.plant.payload.mass_kg += 0.5;
     let load = format!("plant.payload.mass_kg={}", machine.plant.payload.mass_kg);
     let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
-        .args(["tune", "--unknown", "19", "--set", &load, "--out"])
-        .arg(&folder)
+        .args([
+            "tune",
+            "--unknown",
+            &seed.to_string(),
+            "--set",
+            &load,
+            "--out",
+        ])
+        .arg(folder)
         .output()
         .expect("the program runs");
     let told = text(&output);
@@ -386,9 +412,8 @@ fn a_new_payload_is_fitted_or_leaves_everything_as_it_was() {
             told.contains("FAILED") && told.contains("what to do: "),
             "{told}"
         );
-        is_as_before(&machine, &folder);
+        is_as_before(&machine, folder);
     }
-    let _ = std::fs::remove_dir_all(&folder);
 }
 
 #[test]
@@ -586,77 +611,4 @@ fn nobody_at_the_keyboard_is_no_answer() {
     assert_eq!(in_force, kept);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done));
     assert!(text(&done).contains("zero of encoder 3"));
-}
-
-#[test]
-fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
-    let mut stage = StageParameters::REFERENCE;
-    // A gap through which no servo of it holds still.
-    stage.plant.backlash_rad = 5e-3;
-    let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory(), Told::Machine);
-    let speed = machine.ask("VLS?").expect("it answers");
-    let chosen = Chosen::only("reference").expect("a step");
-    let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
-    let failure = ran.done[0].failure.as_ref().expect("a failure");
-    println!("{failure:?}");
-    assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
-}
-
-/// The worst of what gains that are in force make of the plants that were measured with them, beside the loops as measured, and a tenth more.
-const MOST_MS_OFF: f64 = 0.096;
-
-#[test]
-fn loops_are_measured_with_the_gains_in_force_and_others_are_judged_before_they_are() {
-    let options = RunOptions::reference();
-    let flash = machine_settings(&options, SettingsFlash::in_memory());
-    let mut machine = SimulatedMachine::new(&stage_parameters(&options), flash);
-    let gain =
-        |machine: &mut SimulatedMachine| machine.ask("SPA? 1 0x54500311").expect("it answers");
-    machine.ask("CCL 1 ADVANCED").expect("it is taken");
-    let kept = gain(&mut machine);
-    // In force and not kept: that is what is measured, and what is there afterwards.
-    machine.ask("SPA 1 0x54500311 30").expect("it is taken");
-    let ran = run(&mut machine, &Chosen::response(), &mut |_| ()).expect("it answers");
-    for done in &ran.done {
-        assert_eq!(done.failure, None);
-    }
-    assert_eq!(gain(&mut machine), Some("1 0x54500311=30".to_owned()));
-    assert_ne!(kept, gain(&mut machine));
-    let tunable = ran.tunable.expect("loops");
-    let in_force = tunable.numbers();
-    assert!((in_force[0][1] - 30.0).abs() < 1e-9);
-    let same = tunable.predict(&in_force).expect("gains");
-    assert!(same.is_stable);
-    for (predicted, measured) in same.loops.iter().zip(tunable.measured()) {
-        let off = predicted.ms / measured.ms - 1.0;
-        println!("{}: Ms {:.3}, off {off:.3}", measured.place, measured.ms);
-        assert!(off.abs() < MOST_MS_OFF);
-    }
-    // Slower ones reject less; ten times as fast ones are not put in force, and none is no number.
-    let scaled = |by: f64| {
-        in_force.map(|mut all| {
-            all[1] *= by;
-            all
-        })
-    };
-    let slower = tunable.predict(&scaled(0.7)).expect("gains");
-    for (slower, measured) in slower.loops.iter().zip(tunable.measured()) {
-        assert!(
-            slower.rejection > 1.2 * measured.rejection,
-            "{slower:?}, {measured:?}"
-        );
-    }
-    let wild = scaled(10.0);
-    assert!(!tunable.predict(&wild).expect("gains").is_stable);
-    let refused = tunable.put_in_force(&mut machine, &wild).err();
-    assert!(matches!(
-        refused,
-        Some(PutError::Gains(GainsError::Unstable))
-    ));
-    assert_eq!(tunable.predict(&scaled(f64::NAN)), Err(GainsError::NoGain));
-    assert_eq!(gain(&mut machine), Some("1 0x54500311=30".to_owned()));
-    tunable
-        .put_in_force(&mut machine, &scaled(0.9))
-        .expect("it is taken");
-    assert_eq!(gain(&mut machine), Some("1 0x54500311=27".to_owned()));
 }

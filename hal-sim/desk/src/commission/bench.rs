@@ -33,6 +33,8 @@ pub(super) const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
 const TURNING_MS: u32 = 600_000;
 /// Longest time after which an excitation is over that should be, s.
 const EXCITATION_END_S: f64 = 4.0;
+/// Time after a move in which a stage settles that does, s.
+const STAY_S: f64 = 1.0;
 /// How often it is looked whether something has ended, s.
 const LOOK_S: f64 = 0.02;
 
@@ -339,6 +341,14 @@ impl<'a> Bench<'a> {
         Ok(true)
     }
 
+    /// Waits until the stage has settled. One that stays some counts off is good enough, as long as it stays.
+    pub fn stay(&mut self) -> Result<()> {
+        if !self.settles_within(STAY_S)? && self.is_faulted()? {
+            return self.wait_for_target(0.0);
+        }
+        Ok(())
+    }
+
     /// Moves one after the other, each within so many seconds: the largest following error of a pivot, rad.
     pub fn follow(&mut self, moves: &[&str], seconds: f64) -> Result<f64> {
         self.number("LST?", PEAK)?;
@@ -471,4 +481,4 @@ pub(super) fn average(values: &[f64]) -> f64 {
 }
 
 /// What `LST?` tells of following errors since it was asked last.
-const PEAK: &str = "PEAK_ERROR_RAD";
+pub(super) const PEAK: &str = "PEAK_ERROR_RAD";

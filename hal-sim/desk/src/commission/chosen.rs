@@ -9,7 +9,7 @@ use super::servo_gains;
 use super::steps::settle_widely;
 
 /// Steps that need more of those before them than the controller's parameters hold.
-const NOT_FIRST: [&str; 4] = ["hand", "nudges", "response", "tuning"];
+const NOT_FIRST: [&str; 5] = ["hand", "nudges", "response", "tuning", "guides"];
 /// Before it the servo is off, and nothing may be commissioned; after it a servo holds the stage.
 const FIRST_SERVO: &str = "sde";
 /// Steps that find the encoders' zeros: one of them is enough.
@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(names(Chosen::only("friction")), ["friction", "keep"]);
         assert_eq!(
             names(Chosen::from("verification", ZerosBy::Jig)),
-            ["verification", "forces", "keep"]
+            ["verification", "forces", "guides", "keep"]
         );
         assert_eq!(
             Chosen::from("tuning", ZerosBy::Jig).err(),

@@ -6,6 +6,7 @@ use super::measured_loop::MeasuredLoop;
 use super::sines::Excited;
 use crate::record::RecordError;
 use commissioning::drive_model::DriveModel;
+use commissioning::platform::Carriages;
 
 /// What the steps have found; each uses what those before it did.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +31,8 @@ pub(super) struct Known {
     pub is_loaded_anew: bool,
     /// Drives, rings and platform.
     pub model: Option<DriveModel>,
+    /// Friction of the carriages along their guides.
+    pub carriages: Option<Carriages>,
     /// What was recorded in the middle for it.
     pub centre: Option<Excited>,
     /// Loops as measured, with the gains in force.

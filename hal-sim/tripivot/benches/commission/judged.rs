@@ -65,7 +65,25 @@ pub fn figures(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figu
     let mut figures = loops(all);
     figures.extend(drives(machine, all, warmth));
     figures.extend(mechanics(machine, all));
+    figures.extend(guides(machine, all));
     figures
+}
+
+fn guides(machine: &StageParameters, all: &[Done]) -> Figures {
+    let of = |name: &str, unit: &str| number(all, "guides", name, unit);
+    let (plant, torque) = (&machine.plant, torque(machine));
+    let friction = of("friction of a carriage", "N");
+    let stiffness = of("stiffness across a guide", "N/um");
+    vec![
+        (
+            "guides",
+            percent(friction, plant.guide_friction.coulomb * torque),
+        ),
+        (
+            "give",
+            percent(stiffness, plant.guide_stiffness_n_m * 1e-6 * torque),
+        ),
+    ]
 }
 
 fn loops(all: &[Done]) -> Figures {

@@ -25,7 +25,13 @@ use tripivot::attended::SimulatedMachine;
 
 fn main() {
     let path = std::env::var_os("RESULTS").map_or_else(
-        || PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("commission.jsonl"),
+        || {
+            let name = match zeros() {
+                ZerosBy::Jig => "commission.jsonl",
+                ZerosBy::GuideEnds => "commission-ends.jsonl",
+            };
+            PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
+        },
         PathBuf::from,
     );
     let mut all = rows::read(&path);

@@ -24,7 +24,7 @@ const MOVES: [[f64; 3]; 12] = [
     [0.0, 0.0, 90.0],
     [0.0, 0.0, 0.0],
 ];
-const HOME: &str = "MOV X 0 Y 0 W 0";
+pub(super) const HOME: &str = "MOV X 0 Y 0 W 0";
 /// Rounds, each at other angles of all rings: what gears, motors and bearings do at one angle does not repeat in the next.
 const ROUNDS: usize = 8;
 /// What a round is turned by, about the middle and about the platform's own, rad and deg.
@@ -34,10 +34,8 @@ const TURNED_W: f64 = -40.0;
 const SLOW_MOVES: usize = 3;
 /// Their share of the speed.
 const SLOWLY: f64 = 0.1;
-/// Longest of them, slowly and at full speed, s.
-const LONGEST_S: [f64; 2] = [60.0, 10.0];
-/// Time after a move in which a stage settles that does, s.
-const SETTLING_S: f64 = 1.0;
+/// Longest of them, s.
+const LONGEST_S: f64 = 60.0;
 /// Rows of a move's record, and ticks a row: to the end of most moves, so that they brake as often as they accelerate.
 const ROWS: usize = 2_000;
 const EVERY: usize = 2;
@@ -69,6 +67,7 @@ pub(super) fn run(
         Ok(zeros) => zeros,
         Err(error) => return fail(error.to_string(), UNSURE),
     };
+    known.carriages = Some(zeros.carriages);
     found.push(Finding::new(
         "by forces the zeros are known to",
         format!("+-{:.0} mrad", 1e3 * zeros.deviation_rad),
@@ -88,23 +87,15 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Waits until the stage has settled. One that stays some counts off is good enough here, as long as it stays.
-fn stay(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
-    if !bench.settles_within(SETTLING_S)? && bench.is_faulted()? {
-        bench.wait_for_target(LONGEST_S[1])?;
-    }
-    Ok(())
-}
-
 fn look_slowly(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
     let lines: Vec<_> = lines(0).take(SLOW_MOVES).collect();
     let mut lines: Vec<_> = lines.iter().map(String::as_str).collect();
     lines.push(HOME);
-    bench.follow_slowly(SLOWLY, &lines, LONGEST_S[0]).map(drop)
+    bench.follow_slowly(SLOWLY, &lines, LONGEST_S).map(drop)
 }
 
 /// The moves of a round.
-fn lines(round: usize) -> impl Iterator<Item = String> {
+pub(super) fn lines(round: usize) -> impl Iterator<Item = String> {
     let (sin, cos) = (round as f64 * TURNED_RAD).sin_cos();
     MOVES.into_iter().map(move |[x, y, w]| {
         format!(
@@ -125,7 +116,7 @@ fn tours(
     let mut tours = Vec::new();
     for line in (0..ROUNDS).flat_map(lines) {
         let signals = bench.record_all(ROWS, EVERY, &line)?;
-        stay(bench)?;
+        bench.stay()?;
         let torque_n_m = std::array::from_fn(|pivot| {
             let current = signals[pivot].current_a.iter();
             current.map(|one| motor_constants[pivot] * one).collect()
@@ -137,6 +128,6 @@ fn tours(
         });
     }
     bench.ask(HOME)?;
-    stay(bench)?;
+    bench.stay()?;
     Ok(tours)
 }

@@ -4,6 +4,7 @@ mod ends;
 mod forces;
 mod friction;
 mod gains;
+mod guides;
 mod hand;
 mod hunting;
 mod identification;
@@ -111,6 +112,11 @@ pub static STEPS: &[Step] = &[
         name: "forces",
         about: "moves around the middle: whether what the motors have to do for them fits the zeros of the encoders",
         run: forces::run,
+    },
+    Step {
+        name: "guides",
+        about: "what those moves and the resonances tell of the guides: friction of the carriages, how guides give way; made up for from here on",
+        run: guides::run,
     },
     Step {
         name: "keep",

@@ -1,0 +1,100 @@
+//! Single steps of commissioning, on machines whose controllers have been told of them.
+
+use desk::commission::{Chosen, GainsError, Machine, PutError, run};
+use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::machine::unknown;
+use hal_sim::rig::Told;
+use hal_sim::rig::run::{RunOptions, machine_settings, stage_parameters};
+use tripivot::attended::SimulatedMachine;
+
+#[test]
+fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
+    let mut stage = StageParameters::REFERENCE;
+    // A gap through which no servo of it holds still.
+    stage.plant.backlash_rad = 5e-3;
+    let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory(), Told::Machine);
+    let speed = machine.ask("VLS?").expect("it answers");
+    let chosen = Chosen::only("reference").expect("a step");
+    let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
+    let failure = ran.done[0].failure.as_ref().expect("a failure");
+    println!("{failure:?}");
+    assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
+}
+
+/// The worst of what gains that are in force make of the plants that were measured with them, beside the loops as measured, and a tenth more.
+const MOST_MS_OFF: f64 = 0.096;
+
+#[test]
+fn loops_are_measured_with_the_gains_in_force_and_others_are_judged_before_they_are() {
+    let options = RunOptions::reference();
+    let flash = machine_settings(&options, SettingsFlash::in_memory());
+    let mut machine = SimulatedMachine::new(&stage_parameters(&options), flash);
+    let gain =
+        |machine: &mut SimulatedMachine| machine.ask("SPA? 1 0x54500311").expect("it answers");
+    machine.ask("CCL 1 ADVANCED").expect("it is taken");
+    let kept = gain(&mut machine);
+    // In force and not kept: that is what is measured, and what is there afterwards.
+    machine.ask("SPA 1 0x54500311 30").expect("it is taken");
+    let ran = run(&mut machine, &Chosen::response(), &mut |_| ()).expect("it answers");
+    for done in &ran.done {
+        assert_eq!(done.failure, None);
+    }
+    assert_eq!(gain(&mut machine), Some("1 0x54500311=30".to_owned()));
+    assert_ne!(kept, gain(&mut machine));
+    let tunable = ran.tunable.expect("loops");
+    let in_force = tunable.numbers();
+    assert!((in_force[0][1] - 30.0).abs() < 1e-9);
+    let same = tunable.predict(&in_force).expect("gains");
+    assert!(same.is_stable);
+    for (predicted, measured) in same.loops.iter().zip(tunable.measured()) {
+        let off = predicted.ms / measured.ms - 1.0;
+        println!("{}: Ms {:.3}, off {off:.3}", measured.place, measured.ms);
+        assert!(off.abs() < MOST_MS_OFF);
+    }
+    // Slower ones reject less; ten times as fast ones are not put in force, and none is no number.
+    let scaled = |by: f64| {
+        in_force.map(|mut all| {
+            all[1] *= by;
+            all
+        })
+    };
+    let slower = tunable.predict(&scaled(0.7)).expect("gains");
+    for (slower, measured) in slower.loops.iter().zip(tunable.measured()) {
+        assert!(
+            slower.rejection > 1.2 * measured.rejection,
+            "{slower:?}, {measured:?}"
+        );
+    }
+    let wild = scaled(10.0);
+    assert!(!tunable.predict(&wild).expect("gains").is_stable);
+    let refused = tunable.put_in_force(&mut machine, &wild).err();
+    assert!(matches!(
+        refused,
+        Some(PutError::Gains(GainsError::Unstable))
+    ));
+    assert_eq!(tunable.predict(&scaled(f64::NAN)), Err(GainsError::NoGain));
+    assert_eq!(gain(&mut machine), Some("1 0x54500311=30".to_owned()));
+    tunable
+        .put_in_force(&mut machine, &scaled(0.9))
+        .expect("it is taken");
+    assert_eq!(gain(&mut machine), Some("1 0x54500311=27".to_owned()));
+}
+
+#[test]
+fn ends_that_are_not_where_they_are_drawn_are_refused_and_nothing_is_changed() {
+    let mut machine = unknown(1);
+    // Something in the way at the inner ends.
+    machine.plant.guide_range_m[0] += 10e-3;
+    let flash = SettingsFlash::in_memory();
+    let mut stage = SimulatedMachine::told(&machine, flash, Told::Everything);
+    // What is in force again after a failure is what is kept.
+    let kept = stage.ask("WPA 100");
+    assert!(kept.is_ok(), "{kept:?}");
+    let before = stage.parameters().clone();
+    let chosen = Chosen::only("ends").expect("a step");
+    let ran = run(&mut stage, &chosen, &mut |_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let failure = ran.done[0].failure.as_ref().expect("refused");
+    println!("{}: {}", failure.what, failure.advice);
+    assert!(failure.what.contains("ends are off"), "{}", failure.what);
+    assert_eq!(*stage.parameters(), before);
+}
