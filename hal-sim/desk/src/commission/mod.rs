@@ -49,6 +49,7 @@ use crate::line::Endpoint;
 use crate::record::{Desk, RecordError};
 use crate::settings::bring_back;
 pub(crate) use bench::Bench;
+pub(crate) use id::GUIDE_STIFFNESS;
 use known::Known;
 use std::time::Duration;
 pub(crate) use touch::{Before, Touch};
