@@ -3,11 +3,11 @@
 //! Before, the ring's motor carries what friction takes. From the contact on the pivot hardly goes on along its guide, and the current rises with the force at the end,
 //! which gives way under it: a straight line of place over current, whose place at the current of friction alone is that of the end without any force.
 
+use crate::DRAWN;
 use crate::accuracy::DISK;
 use crate::kit::GUIDE_ENDS;
 use crate::plan::CLEAR_OF_ENDS;
 use crate::position::{Position, position, readings_rad};
-use crate::{DRAWN, Machine};
 
 /// How a ring is moved against an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +96,7 @@ pub fn contact(
         (rows.iter().enumerate()).max_by(|(_, a), (_, b)| a.current_a.total_cmp(&b.current_a));
     let last = largest.ok_or(ContactError::None)?.0;
     let places = (rows[..=last].iter())
-        .map(|row| place(&DRAWN, &row.readings_rad, guide))
+        .map(|row| place(&row.readings_rad, guide))
         .collect::<Option<Vec<f64>>>()
         .ok_or(ContactError::Elsewhere)?;
     let free = rows
@@ -130,8 +130,8 @@ pub fn contact(
 }
 
 /// Where a pivot is on its guide, track radii.
-fn place(machine: &Machine, readings_rad: &[f64; 3], guide: usize) -> Option<f64> {
-    Some(position(machine, readings_rad).ok()?.contacts[guide].rho)
+fn place(readings_rad: &[f64; 3], guide: usize) -> Option<f64> {
+    Some(position(&DRAWN, readings_rad).ok()?.contacts[guide].rho)
 }
 
 /// What it changes by for each rad of a ring.
@@ -139,7 +139,7 @@ fn slope(readings_rad: &[f64; 3], guide: usize, ring: usize) -> Option<f64> {
     let moved = |by_rad: f64| {
         let mut readings_rad = *readings_rad;
         readings_rad[ring] += by_rad;
-        place(&DRAWN, &readings_rad, guide)
+        place(&readings_rad, guide)
     };
     Some((moved(STEP_RAD)? - moved(-STEP_RAD)?) / (2.0 * STEP_RAD))
 }
@@ -207,7 +207,7 @@ mod tests {
         for (guide, end, end_at, ring) in [(0, 0, 0.163, 0), (1, 0, 0.158, 2), (2, 1, 1.838, 1)] {
             let (rows, touching) = record(guide, end_at, ring);
             let found = contact(&rows, (guide, end), ring).expect("a contact");
-            let off = place(&DRAWN, &found, guide).expect("in reach") - end_at;
+            let off = place(&found, guide).expect("in reach") - end_at;
             println!("{guide} {end}: off by {:.3} um", off * 1e5);
             assert!(off.abs() < 2e-6, "{off:e}");
             // Rings that were held are where they were.

@@ -53,6 +53,13 @@ pub(super) fn run(
             values.push((id::GUIDE_STIFFNESS, stiffness_n_um));
         }
     }
+    if values.is_empty() {
+        found.push(Finding::told(
+            "made up for",
+            "nothing: neither is known well enough",
+        ));
+        return Ok(());
+    }
     make_up_for(bench, found, &values)
 }
 
