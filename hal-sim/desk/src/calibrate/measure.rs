@@ -8,7 +8,8 @@ use calibration::contact::{Pressed, approach as approach_end, contact};
 use calibration::plan::{At, Stop};
 use calibration::{Seen, Visit};
 
-use crate::commission::{Before, Bench, CommissionError, GUIDE_STIFFNESS, Machine, Touch};
+use super::guide_give::GuideGive;
+use crate::commission::{Before, Bench, CommissionError, Machine, Touch};
 use crate::record::RecordError;
 
 /// Rows between two visits of the reference pose.
@@ -160,18 +161,10 @@ pub fn measure(
             fault => MeasureError::Stage(format!("the stage does not hold{fault}")),
         });
     }
-    // Made up for, how guides give way is in what the encoders read, and in no pose: a fit would take it for scatter.
-    let stiffness = stage.bench.parameter(GUIDE_STIFFNESS)?;
-    if stiffness > 0.0 {
-        stage.bench.set(&[(GUIDE_STIFFNESS, 0.0)])?;
-    }
+    let give = GuideGive::set_aside(&mut stage.bench)?;
     let visited = visits_or_touches(&mut stage, reader, way, keep);
-    // As it was, whatever came of the visits: which is what is told of.
-    if stiffness > 0.0 {
-        let given_back = stage.bench.set(&[(GUIDE_STIFFNESS, stiffness)]);
-        return visited.and(given_back.map_err(MeasureError::from));
-    }
-    visited
+    let given_back = give.give_back(&mut stage.bench);
+    visited.and(given_back.map_err(MeasureError::from))
 }
 
 fn visits_or_touches(

@@ -3,11 +3,13 @@
 //! | file | idea |
 //! |---|---|
 //! | `measure` | a plan is driven, and an instrument read at each of its poses |
+//! | `guide_give` | what is not made up for meanwhile |
 //! | `apply` | a calibration is sent to the controller it was made for, all of it or nothing |
 //! | `verify`, `told` | one that is in force is judged by fresh poses |
 //! | [`report`] | all that is known of one, as a page |
 
 mod apply;
+mod guide_give;
 mod measure;
 pub mod report;
 mod told;

@@ -28,6 +28,8 @@ pub(super) const SUPPLY: &str = "0 201";
 const POINTS: &str = "0x16000201";
 const BEFORE: &str = "0x54500900";
 const PERIOD: u32 = 0x0E00_0200;
+/// What a controller answers that has no store.
+const NO_STORE: u16 = ErrorCode::NotForStage.number();
 pub(super) const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
 /// Longest time for which the platform turns without being asked again: more than any step takes, with records over a slow line.
 const TURNING_MS: u32 = 600_000;
@@ -134,6 +136,14 @@ impl<'a> Bench<'a> {
     pub fn parameter(&mut self, id: u32) -> Answered<f64> {
         let id = format!("1 0x{id:X}");
         self.number(&format!("SPA? {id}"), &id)
+    }
+
+    /// A parameter as it is kept; one of a controller that keeps nothing is as it was.
+    pub fn recall(&mut self, id: u32) -> Answered<()> {
+        match self.ask(&format!("RPA 1 0x{id:X}")) {
+            Err(RecordError::Refused { code, .. }) if code == NO_STORE => Ok(()),
+            answer => answer.map(drop),
+        }
     }
 
     /// All parameters as the controller has them.

@@ -44,9 +44,13 @@ pub(crate) struct Before([(u32, f64); 3]);
 impl Before {
     /// Sets those that rings need here; not with the servo on.
     pub fn widen(bench: &mut Bench<'_>) -> Result<Self> {
-        let mut before = LIMITS;
-        for (id, value) in &mut before {
-            *value = bench.parameter(*id)?;
+        let mut before = read(bench)?;
+        if before == LIMITS {
+            // Somebody was cut off who had widened them.
+            for (id, _) in LIMITS {
+                bench.recall(id)?;
+            }
+            before = read(bench)?;
         }
         bench.set(&LIMITS)?;
         Ok(Self(before))
@@ -56,6 +60,15 @@ impl Before {
     pub fn give_back(self, bench: &mut Bench<'_>) -> Result<()> {
         Ok(bench.set(&self.0)?)
     }
+}
+
+/// Limits of excitations in force.
+fn read(bench: &mut Bench<'_>) -> Result<[(u32, f64); 3]> {
+    let mut limits = LIMITS;
+    for (id, value) in &mut limits {
+        *value = bench.parameter(*id)?;
+    }
+    Ok(limits)
 }
 
 /// Which ring is moved, and which way.
