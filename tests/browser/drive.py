@@ -3,6 +3,7 @@
 import argparse
 import unittest
 
+from calibration import Calibration
 from commissioning import Commissioning
 from foreign import Foreign
 from live import Live
@@ -16,7 +17,7 @@ from settings import ARGUMENTS
 from silent import Silent
 from view import OnChip, OnTerminal
 
-__all__ = ["Commissioning", "Foreign", "Live", "OnChip", "OnTerminal", "Owners", "Panels", "Real", "Remote", "Report", "Sequence", "Silent"]
+__all__ = ["Calibration", "Commissioning", "Foreign", "Live", "OnChip", "OnTerminal", "Owners", "Panels", "Real", "Remote", "Report", "Sequence", "Silent"]
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -81,9 +81,9 @@ impl SimulatedMachine {
     }
 
     /// The platform's true pose, m, m and rad, as it is whenever that is looked at.
-    #[must_use]
-    pub fn true_pose(&self) -> Rc<Cell<[f64; 3]>> {
-        Rc::clone(&self.true_pose)
+    pub fn true_pose(&self) -> impl Fn() -> [f64; 3] + use<> {
+        let true_pose = Rc::clone(&self.true_pose);
+        move || true_pose.get()
     }
 
     /// What its controller has been told, or has found.

@@ -1,7 +1,7 @@
 //! The simulated stage as a controller that can be served.
 
-use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::person::Person;
 use desk::commission::Task;
@@ -20,6 +20,8 @@ pub struct Simulated<'a> {
     person: Person,
     /// What the person beside it is asked for.
     tasks: Option<Receiver<Task>>,
+    /// Where the platform truly is, m, m and rad, for instruments in other threads, if there are any.
+    true_pose: Option<Arc<Mutex<[f64; 3]>>>,
 }
 
 impl<'a> Simulated<'a> {
@@ -37,6 +39,7 @@ impl<'a> Simulated<'a> {
             rate_hz: parameters.limits.rate_hz,
             person: Person::default(),
             tasks: None,
+            true_pose: None,
         }
     }
 
@@ -48,6 +51,14 @@ impl<'a> Simulated<'a> {
             // A machine that is gone needs no person.
             let _ = tasks.send(task);
         })
+    }
+
+    /// The platform's true pose, m, m and rad, as it is whenever that is looked at.
+    pub fn true_pose(&mut self) -> impl Fn() -> [f64; 3] + Clone + Send + Sync + use<> {
+        let pose = self.rig.front.stage.plant.pose();
+        let shared = Arc::new(Mutex::new(pose));
+        self.true_pose = Some(Arc::clone(&shared));
+        move || *shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -64,6 +75,10 @@ impl Controller for Simulated<'_> {
         }
         self.person.tick(stage);
         self.rig.tick(&mut ());
+        if let Some(true_pose) = &self.true_pose {
+            let pose = self.rig.front.stage.plant.pose();
+            *true_pose.lock().unwrap_or_else(PoisonError::into_inner) = pose;
+        }
     }
 
     fn advance(&mut self) {

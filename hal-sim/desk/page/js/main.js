@@ -2,6 +2,7 @@
 
 import { Aim } from "./aim.js";
 import { announce } from "./announce.js";
+import { Calibration } from "./calibration.js";
 import { commandHelp } from "./commands.js";
 import { Commissioning } from "./commissioning.js";
 import { commandLine } from "./console.js";
@@ -50,6 +51,7 @@ const operator = new Operator(stage.link);
 log(operator, stage.link);
 new SequencePanel(operator, firstMove);
 const commissioning = new Commissioning(operator, firstMove);
+new Calibration(operator, firstMove);
 new Tuning(operator, firstMove);
 drive(stage);
 steps(stage);

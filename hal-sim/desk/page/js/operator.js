@@ -1,7 +1,9 @@
-// The second connection to the server: sequences, commissioning and the log. The server takes a page whose connection ends for gone.
+// The second connection to the server: sequences, commissioning, calibration and the log. The server takes a page whose connection ends for gone.
 
 import { socketTo } from "./link.js";
 
+/** What orders are for, besides sequences. */
+const RUNS = ["commissioning", "calibration"];
 const RETRY_MS = 300;
 /** Longest wait for the connection, and for an answer. */
 const PATIENCE_MS = 2000;
@@ -23,13 +25,14 @@ export class Operator extends EventTarget {
     return this.#socket?.readyState === WebSocket.OPEN;
   }
 
-  /** Gives an order to the sequence or to the commissioning; throws when it cannot get there, or nobody answers. */
+  /** Gives an order to the sequence, the commissioning or the calibration; throws when it cannot get there, or nobody answers. */
   async order(order) {
     const { stale, age } = this.link.freshness;
-    const begins = !["stop", "pause", "end"].includes(order.commissioning ?? order);
+    const run = RUNS.find((kind) => order[kind]);
+    const begins = !["stop", "pause", "end"].includes(run ? order[run] : order);
     if (stale && begins && this.link.open) throw new Error(`not sent: no status for ${age.toFixed(1)} s`);
     if (!this.open) await this.#opened();
-    const told = this.#told(order.commissioning ? "commissioning" : "sequence");
+    const told = this.#told(run ?? "sequence");
     this.#socket.send(JSON.stringify({ token: this.link.token, order, who: this.link.who, key: this.#key }));
     await told;
   }

@@ -1,6 +1,6 @@
 // Gains by hand: the loops as measured, what other gains would make of them, and those put in force.
 
-import { figure } from "./commissioning.js";
+import { figure } from "./steps.js";
 import { byId, make, report, setText } from "./dom.js";
 
 /** Rows of the gains, as the server has them for each pivot. */

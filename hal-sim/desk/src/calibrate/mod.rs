@@ -2,20 +2,34 @@
 //!
 //! | file | idea |
 //! |---|---|
+//! | `planned` | where to measure, and what will come of it, in words |
 //! | `measure` | a plan is driven, and an instrument read at each of its poses |
 //! | `guide_give` | what is not made up for meanwhile |
+//! | `fitted` | a calibration from what was measured |
+//! | `reading` | numbers to and from whoever reads an instrument |
+//! | [`rows`] | a measurement as the text that is kept of it |
 //! | `apply` | a calibration is sent to the controller it was made for, all of it or nothing |
 //! | `verify`, `told` | one that is in force is judged by fresh poses |
+//! | `line` | a line of what is told |
 //! | [`report`] | all that is known of one, as a page |
 
 mod apply;
+mod fitted;
 mod guide_give;
+mod line;
 mod measure;
+mod planned;
+mod reading;
 pub mod report;
+pub mod rows;
 mod told;
 mod verify;
 
 pub use apply::{ApplyError, Evidence, apply, lines, switch_off};
+pub use fitted::{FitTold, Fitted, FittedError, Moved};
+pub use line::Line;
 pub use measure::{MeasureError, Measured, Reader, Wanted, Way, measure, serial, with_references};
+pub use planned::{PlanTold, noise};
+pub use reading::{fields, question, reading};
 pub use told::{Kind, Told};
 pub use verify::{Verdict, Verified, VerifyError, verify};

@@ -5,6 +5,7 @@ use calibration::judge::Errors;
 use kinematics::Geometry;
 use serde::{Deserialize, Serialize};
 
+use super::line::Line;
 use super::verify::{Verdict, Verified};
 
 const URAD: f64 = 1e6;
@@ -104,6 +105,82 @@ impl Told {
             .to_owned(),
             poses: seen(verified),
         }
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn lines(&self) -> Vec<Line> {
+        let poses = self.visits / 2;
+        let mut lines = vec![Line::new(
+            "verified",
+            format!("{}, {poses} fresh poses, each from both sides", self.kit),
+        )];
+        let kinds = [
+            ("x and y", "um", &self.xy_um),
+            ("theta", "urad", &self.theta_urad),
+        ];
+        for (what, unit, kind) in kinds {
+            let Some(kind) = kind else { continue };
+            let told = |more: &str, told: String| Line::new(format!("{what}{more}"), told);
+            lines.push(told(
+                "",
+                format!(
+                    "{:.4} {unit} rms seen, {:.4} of it noise and scatter: {}, {:.4} predicted",
+                    kind.seen,
+                    kind.noise,
+                    if kind.of_stage > 0.0 {
+                        format!("{:.4} of the stage", kind.of_stage)
+                    } else {
+                        "nothing of the stage to be seen".to_owned()
+                    },
+                    kind.predicted
+                ),
+            ));
+            lines.push(told(
+                ", over predicted",
+                format!(
+                    "{:.3}, noise in both; from {} to {} is as predicted",
+                    kind.ratio, self.as_predicted[0], self.as_predicted[1]
+                ),
+            ));
+            lines.push(told(
+                ", largest",
+                format!(
+                    "{:.4} {unit}, on visit {}",
+                    kind.largest, kind.largest_at_visit
+                ),
+            ));
+            lines.push(told(
+                ", both sides",
+                format!(
+                    "{:.4} {unit} rms apart, {:.4} by noise and scatter alone",
+                    kind.both_sides_apart,
+                    kind.noise * std::f64::consts::SQRT_2
+                ),
+            ));
+            lines.push(told(
+                ", as drawn",
+                format!("{:.3} {unit} rms without it", kind.as_drawn),
+            ));
+        }
+        if let Some(scale) = self.scale {
+            let told =
+                format!("{scale:.7} of the instrument's, taken out: the calibration knows none");
+            lines.push(Line::new("scale", told));
+        }
+        let verdict = match &*self.verdict {
+            "worse than predicted" | "worse than without it" => format!(
+                "{}: another machine's, damaged, out of date, or the instrument is not what was said; `tripivot calibrate undo` takes it out of force",
+                self.verdict
+            ),
+            "better than predicted" => {
+                "better than predicted: the noise is not what was said".to_owned()
+            }
+            verdict => verdict.to_owned(),
+        };
+        let is_good = matches!(&*self.verdict, "as predicted" | "better than predicted");
+        lines.push(Line::judged("verdict", verdict, is_good));
+        lines
     }
 }
 

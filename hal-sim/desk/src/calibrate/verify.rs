@@ -111,7 +111,8 @@ fn fresh(instrument: &Instrument, poses: usize) -> Vec<Stop> {
         .collect()
 }
 
-/// Goes to fresh poses with the calibration in force, and judges what is seen there.
+/// Goes to fresh poses with the calibration in force, and judges what is seen there. `progress` is told how many visits have been made, and of
+/// how many.
 ///
 /// # Errors
 /// [`VerifyError`].
@@ -121,6 +122,7 @@ pub fn verify(
     calibration: &Calibration,
     instrument: &Instrument,
     poses: usize,
+    progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Verified, VerifyError> {
     if instrument.kit == Kit::Ends {
         return Err(VerifyError::Ends);
@@ -144,6 +146,7 @@ pub fn verify(
     let mut all: Vec<Measured> = Vec::new();
     measure(machine, reader, &way, &mut |measured| {
         all.push(*measured);
+        progress(all.len(), stops.len());
         Ok(())
     })?;
     let commanded: Result<Vec<Visit>, _> = (all.iter().enumerate())

@@ -23,7 +23,7 @@
 //! | `http` | connections of browsers, bounded in number and patience |
 //! | `viewer` | one browser: status and answers out, requests in |
 //! | `life` | whether a page is still there |
-//! | `operator` | sequences and commissioning that run here, and the log of who did what |
+//! | `operator` | sequences, commissioning and calibration that run here, and the log of who did what |
 //! | `lesson` | the mechanism's three movements, for the page's explanation |
 //! | `server`, `shared` | the page's files, the token, the WebSockets; what their handlers share |
 //!
@@ -49,7 +49,8 @@ mod watch;
 
 use std::io;
 
-pub use operator::commissioning::Person;
+pub use operator::calibration::{Instruments, SetUp};
+pub use operator::runs::Person;
 pub use password::new_password;
 pub use server::{Page, PageOptions};
 pub use watch::questions;

@@ -18,7 +18,8 @@ use tokio::sync::{Semaphore, oneshot};
 
 use super::bridge::Bridge;
 use super::guard::Guard;
-use super::operator::commissioning::Person;
+use super::operator::calibration::Instruments;
+use super::operator::runs::Person;
 use super::operator::{self, Operator};
 use super::password::Password;
 use super::request::MESSAGE_BYTES;
@@ -62,6 +63,8 @@ pub struct PageOptions {
     pub public_url: Option<String>,
     /// Whoever does with a simulated machine what commissioning asks a person for.
     pub person: Option<Person>,
+    /// What reads instruments; where nothing does, whoever looks at a page is asked.
+    pub instruments: Option<Instruments>,
 }
 
 impl PageOptions {
@@ -73,6 +76,7 @@ impl PageOptions {
             password: None,
             public_url: None,
             person: None,
+            instruments: None,
         }
     }
 }
@@ -103,7 +107,8 @@ impl Page {
             password: (options.password.clone().map(Password::new).transpose()?).map(Arc::new),
             operator: {
                 let _within = runtime.enter();
-                Operator::start(bridge.clone(), options.person.clone())?
+                let (person, instruments) = (options.person.clone(), options.instruments.clone());
+                Operator::start(bridge.clone(), person, instruments)?
             },
             bridge,
             sockets: Arc::new(Semaphore::new(SOCKETS)),
@@ -158,6 +163,7 @@ fn router(shared: Shared) -> Router {
         .route(login::PATH, get(login::form).post(login::enter))
         .route("/operator", get(operate))
         .route("/commissioning/{file}", get(commissioning_file))
+        .route("/calibration/{file}", get(calibration_file))
         .route("/lesson.json", get(lesson_frames))
         .route("/tasks.json", get(task_frames));
     for asset in assets::all() {
@@ -217,6 +223,11 @@ async fn lesson_frames() -> Response {
 /// Plots, tables and reports of a commissioning.
 async fn commissioning_file(State(shared): State<Shared>, Path(name): Path<String>) -> Response {
     shared.operator.commissioning.files().answer(&name)
+}
+
+/// What was measured for a calibration, its file and its report.
+async fn calibration_file(State(shared): State<Shared>, Path(name): Path<String>) -> Response {
+    shared.operator.calibration.files().answer(&name)
 }
 
 async fn live(State(shared): State<Shared>, headers: HeaderMap, upgrade: Upgrade) -> Response {

@@ -10,7 +10,7 @@ use tokio::sync::{Semaphore, mpsc};
 use super::bridge::{Bridge, Way, json};
 use super::guard::Guard;
 use super::life::{Life, send};
-use super::operator::{Operator, Order};
+use super::operator::Operator;
 use super::request::{self, Refusal, Request, Wanted};
 use crate::error_words::refused_with;
 use crate::line::Answer;
@@ -147,8 +147,7 @@ fn take(
     let line_out = match wanted {
         Wanted::Stop => {
             // Before the stop is sent: no line of a sequence may follow it.
-            operator.commissioning.stopped(&who);
-            operator.sequence.order(Order::Stopped { who: who.clone() });
+            operator.stopped(&who);
             let reply = reply(id, bridge.stop());
             operator.journal.note(&who, &line, &reply.in_words(true));
             return Some(reply);

@@ -3,20 +3,29 @@
 use std::io::{self, Write};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::process::ExitCode;
+use std::sync::Arc;
+
+use calibration::Instrument;
 
 use super::arguments::Serve;
+use super::calibrate::reader::{self, TruePose};
 use super::error::CliError;
 use super::signal::until_signal;
 use super::stage::stage_options;
-use super::view::page;
+use super::view::{Beside, page};
+use desk::calibrate::Reader;
 use desk::line::Endpoint;
 use desk::serve::{Printer, REMOTE_MEANS, ServeOptions, Server, check_address};
-use desk::web::Page;
-use hal_sim::machine::devices::SettingsFlash;
+use desk::web::{Instruments, Page};
+use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::machine::instruments;
 use hal_sim::rig::ControllerMemory;
+use hal_sim::rig::run::stage_parameters;
 
 use crate::simulated::Simulated;
 
+/// Of how simulated instruments are set up: the same plate as long as it serves.
+const INSTRUMENT_SEED: u64 = 1;
 /// In place of the page's address: no page.
 const OFF: &str = "off";
 
@@ -26,7 +35,8 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
         .map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
     let settings = settings_text(arguments, &flash);
     let mut memory = ControllerMemory::new();
-    let mut stage = Simulated::new(&mut memory, &stage_options(&arguments.stage)?, flash);
+    let options = stage_options(&arguments.stage)?;
+    let mut stage = Simulated::new(&mut memory, &options, flash);
     let server = Server::bind(ServeOptions {
         listen: arguments.listen.clone(),
         speed: arguments.speed,
@@ -38,12 +48,11 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
         Some(OFF) => None,
         web => {
             let endpoint = Endpoint::Tcp(reached_at(own).to_string());
-            Some(page(
-                web,
-                &arguments.access,
-                endpoint,
-                Some(stage.person()),
-            )?)
+            let beside = Beside {
+                person: Some(stage.person()),
+                instruments: Some(instruments(&mut stage, &stage_parameters(&options))),
+            };
+            Some(page(web, &arguments.access, endpoint, beside)?)
         }
     };
     announce(&server, page.as_ref(), is_remote, &settings).map_err(CliError::output)?;
@@ -52,6 +61,22 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
     printer.finish();
     result?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The simulated instruments, which see the true pose.
+fn instruments(stage: &mut Simulated<'_>, built: &StageParameters) -> Instruments {
+    let (true_pose, wiring) = (stage.true_pose(), built.wiring);
+    let radius_m = built.plant.track_radius_m;
+    let set_up = move |instrument: &Instrument| -> Option<Box<dyn Reader>> {
+        Some(Box::new(reader::Simulated {
+            instrument: instruments::Beside::set_up(instrument, radius_m, INSTRUMENT_SEED)?,
+            true_pose: TruePose::new(true_pose.clone(), &wiring),
+        }))
+    };
+    Instruments {
+        words: "the simulated instrument",
+        set_up: Arc::new(set_up),
+    }
 }
 
 /// Where this machine itself reaches a server that listens at `address`.

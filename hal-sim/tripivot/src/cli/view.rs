@@ -4,16 +4,18 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
 use super::arguments::{Access, Controller, View};
+use super::calibrate::reader::Asked;
 use super::error::CliError;
 use super::signal::until_signal;
 use desk::line::Endpoint;
 use desk::serve::{REMOTE_PAGE_MEANS, check_address};
-use desk::web::{Page, PageError, PageOptions, Person, new_password};
+use desk::web::{Instruments, Page, PageError, PageOptions, Person, new_password};
 
 /// Where the page is unless it is told otherwise.
 const ADDRESS: &str = "127.0.0.1:8080";
@@ -28,7 +30,17 @@ pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
     let endpoint = endpoint(&arguments.controller)?;
     let stop = until_signal()?;
     let place = endpoint.to_string();
-    let page = page(arguments.web.as_deref(), &arguments.access, endpoint, None)?;
+    let instruments = arguments.reader.as_deref().map(asked);
+    let beside = Beside {
+        person: None,
+        instruments,
+    };
+    let page = page(
+        arguments.web.as_deref(),
+        &arguments.access,
+        endpoint,
+        beside,
+    )?;
     let text = format!(
         "page at http://{}/ for the controller at {place}\nCtrl-C ends it\n",
         page.address()
@@ -42,6 +54,26 @@ pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
         thread::sleep(LOOK_EVERY);
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What is beside a machine, in place of whoever looks at its page.
+pub(super) struct Beside {
+    pub(super) person: Option<Person>,
+    pub(super) instruments: Option<Instruments>,
+}
+
+/// Instruments that this command reads.
+fn asked(command: &str) -> Instruments {
+    let command = command.to_owned();
+    Instruments {
+        words: "the command of --reader",
+        set_up: Arc::new(move |instrument| {
+            Some(Box::new(Asked {
+                command: command.clone(),
+                instrument: instrument.clone(),
+            }))
+        }),
+    }
 }
 
 /// Where a controller is. A device that is not there is more likely misspelt than unplugged.
@@ -63,12 +95,12 @@ pub(super) fn endpoint(controller: &Controller) -> Result<Endpoint, CliError> {
 }
 
 /// The page where it was asked for, or at its usual place or a free port; with a password where others than this machine may
-/// reach it. `person`: beside a simulated machine.
+/// reach it.
 pub(super) fn page(
     address: Option<&str>,
     access: &Access,
     endpoint: Endpoint,
-    person: Option<Person>,
+    beside: Beside,
 ) -> Result<Page, CliError> {
     let is_remote = check_address(address.unwrap_or(ADDRESS), access.allow_remote)?;
     if is_remote {
@@ -79,7 +111,8 @@ pub(super) fn page(
         address: address.to_owned(),
         password: password.clone(),
         public_url: access.public_url.clone(),
-        person: person.clone(),
+        person: beside.person.clone(),
+        instruments: beside.instruments.clone(),
     };
     let page = match address {
         Some(address) => Page::start(&options(address), endpoint),

@@ -19,6 +19,7 @@ use std::fmt::Write;
 
 use super::told::Told;
 pub use maps::{before_and_after, errors};
+pub use plots::left_by_visit;
 
 /// What a report is made of.
 #[derive(Clone, Copy, Debug)]

@@ -2,6 +2,7 @@
 
 use calibration::left::HARMONICS;
 use calibration::table::Table;
+use calibration::{Fit, Left};
 use drawing::colour;
 use drawing::page::figure;
 use drawing::plane::{Axis, Curve, Plane};
@@ -10,6 +11,7 @@ use drawing::svg::{Point, Rect, Svg};
 use kinematics::Geometry;
 
 use super::Found;
+use crate::commission::Plot;
 
 const NM: f64 = Geometry::REFERENCE.radius_mm * 1e6;
 const URAD: f64 = 1e6;
@@ -82,14 +84,22 @@ const AXES: [(&str, &str, f64); 3] = [
     ("theta", colour::THETA, URAD),
 ];
 
-/// What is left of each visit.
+/// What is left of each visit, as figures of a page.
 pub(super) fn visits(found: &Found) -> String {
-    let misses = &found.left.visits;
+    let plots = left_by_visit(&found.fit, &found.left);
+    let figures = plots.iter().map(|plot| figure(&plot.svg, &plot.caption));
+    figures.collect()
+}
+
+/// What a fit leaves of each visit: of x and y, and of theta, where they are seen.
+#[must_use]
+pub fn left_by_visit(fit: &Fit, left: &Left) -> Vec<Plot> {
+    let misses = &left.visits;
     let sees = |axis: usize| misses.iter().any(|miss| miss.seen.contains(&axis));
     let set = |axis: usize| {
         let (name, colour, unit) = AXES[axis];
         let of_visit = |(visit, miss): (usize, &calibration::left::Miss)| {
-            let is_left = miss.seen.contains(&axis) && !found.fit.outliers.contains(&visit);
+            let is_left = miss.seen.contains(&axis) && !fit.outliers.contains(&visit);
             is_left.then(|| [visit as f64 + 1.0, miss.off[axis] * unit])
         };
         let places = misses.iter().enumerate().filter_map(of_visit).collect();
@@ -100,7 +110,7 @@ pub(super) fn visits(found: &Found) -> String {
         }
     };
     let end = misses.len() as f64 + 1.0;
-    let outliers = match &found.fit.outliers[..] {
+    let outliers = match &fit.outliers[..] {
         [] => "No visit was left out.".to_owned(),
         list => {
             let list: Vec<String> = list.iter().map(|visit| (visit + 1).to_string()).collect();
@@ -110,24 +120,24 @@ pub(super) fn visits(found: &Found) -> String {
             )
         }
     };
-    let mut page = String::new();
     let caption = "Seen less what the fitted machine says, visit by visit. It should be a band of even width around 0 without steps or \
          slopes: a step is a knock, a slope is drift, a band that widens an instrument that gets worse.";
+    let mut plots = Vec::new();
     if sees(0) {
         let title = "What is left of x and y, nm";
-        page += &figure(
-            &dots(title, "visit", (0.0, end), vec![set(0), set(1)], &[], &[]),
-            &format!("{caption} {outliers}"),
-        );
+        plots.push(Plot {
+            svg: dots(title, "visit", (0.0, end), vec![set(0), set(1)], &[], &[]),
+            caption: format!("{caption} {outliers}"),
+        });
     }
     if sees(2) {
         let title = "What is left of theta, urad";
-        page += &figure(
-            &dots(title, "visit", (0.0, end), vec![set(2)], &[], &[]),
-            &format!("The same of theta. {outliers}"),
-        );
+        plots.push(Plot {
+            svg: dots(title, "visit", (0.0, end), vec![set(2)], &[], &[]),
+            caption: format!("The same of theta. {outliers}"),
+        });
     }
-    page
+    plots
 }
 
 /// What is left at harmonics of each ring.

@@ -1,4 +1,4 @@
-//! A page's second connection: the sequence, the commissioning and the log out, orders in.
+//! A page's second connection: the sequence, the commissioning, the calibration and the log out, orders in.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,8 +8,9 @@ use serde::Deserialize;
 use tokio::sync::broadcast::error::RecvError;
 
 use super::Operator;
-use super::commissioning::{self, Ordered};
+use super::runs::Ordered;
 use super::sequence_status::{Order, Orderer};
+use super::{calibration, commissioning};
 use crate::web::guard::Guard;
 use crate::web::life::{Life, send};
 
@@ -40,13 +41,15 @@ enum Wanted {
     Continue,
     Stop,
     Commissioning(Box<commissioning::Order>),
+    Calibration(calibration::Order),
 }
 
 /// What a page wants, and of whom.
 #[derive(Debug, PartialEq)]
 enum Taken {
     Sequence(Order),
-    Commissioning(Box<Ordered>),
+    Commissioning(Box<Ordered<commissioning::Order>>),
+    Calibration(Ordered<calibration::Order>),
 }
 
 /// Serves a page until it is gone.
@@ -54,8 +57,7 @@ pub(in crate::web) async fn serve(mut socket: WebSocket, operator: Operator, gua
     static PAGES: AtomicU64 = AtomicU64::new(1);
     let page = PAGES.fetch_add(1, Ordering::Relaxed);
     talk(&mut socket, &operator, &guard, page).await;
-    operator.commissioning.gone(page);
-    operator.sequence.order(Order::Gone { page });
+    operator.gone(page);
 }
 
 async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: u64) {
@@ -63,6 +65,8 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
     told.mark_changed();
     let mut commissioning = operator.commissioning.told();
     commissioning.mark_changed();
+    let mut calibration = operator.calibration.told();
+    calibration.mark_changed();
     let (kept, mut news) = operator.journal.read();
     for entry in kept {
         if !send(socket, Message::Text(entry.as_ref().into())).await {
@@ -81,6 +85,7 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
                     match order {
                         Taken::Sequence(order) => operator.sequence.order(order),
                         Taken::Commissioning(ordered) => operator.commissioning.order(*ordered),
+                        Taken::Calibration(ordered) => operator.calibration.order(ordered),
                     }
                 }
                 continue;
@@ -88,6 +93,9 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
             Ok(()) = told.changed() => Message::Text(told.borrow_and_update().as_ref().into()),
             Ok(()) = commissioning.changed() => {
                 Message::Text(commissioning.borrow_and_update().as_ref().into())
+            }
+            Ok(()) = calibration.changed() => {
+                Message::Text(calibration.borrow_and_update().as_ref().into())
             }
             entry = news.recv() => match entry {
                 Ok(entry) => Message::Text(entry.as_ref().into()),
@@ -125,13 +133,9 @@ fn order(text: &str, guard: &Guard, page: u64) -> Option<Taken> {
     };
     Some(Taken::Sequence(match order {
         Wanted::Commissioning(order) => {
-            return Some(Taken::Commissioning(Box::new(Ordered {
-                order: *order,
-                who,
-                page,
-                key: by.key,
-            })));
+            return Some(Taken::Commissioning(Box::new(ordered(*order, who, by))));
         }
+        Wanted::Calibration(order) => return Some(Taken::Calibration(ordered(order, who, by))),
         Wanted::Run { name, text } => run(name, text, false, by),
         Wanted::First { name, text } => run(name, text, true, by),
         Wanted::Step => Order::Step { by },
@@ -139,6 +143,16 @@ fn order(text: &str, guard: &Guard, page: u64) -> Option<Taken> {
         Wanted::Continue => Order::Continue { by },
         Wanted::Stop => Order::Stop,
     }))
+}
+
+fn ordered<O>(order: O, who: String, by: Orderer) -> Ordered<O> {
+    let Orderer { page, key } = by;
+    Ordered {
+        order,
+        who,
+        page,
+        key,
+    }
 }
 
 #[cfg(test)]

@@ -32,6 +32,10 @@ pub(in super::super) struct View {
     /// Address and port of the page [default: 127.0.0.1:8080, or a free port if that is taken].
     #[arg(long, value_name = "ADDRESS")]
     pub(in super::super) web: Option<String>,
+    /// Command that reads the instrument for a calibration from the page, as for `tripivot calibrate measure` [default: whoever looks at the page
+    /// is asked].
+    #[arg(long, value_name = "COMMAND")]
+    pub(in super::super) reader: Option<String>,
     #[command(flatten)]
     pub(in super::super) access: Access,
 }

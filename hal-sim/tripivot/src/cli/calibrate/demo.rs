@@ -13,7 +13,8 @@ use calibration::table::Table;
 use calibration::{Instrument, Kit, Noise, Seen, plan};
 use desk::calibrate::report::{Report, Truth, before_and_after, page};
 use desk::calibrate::{
-    Evidence, Reader, Told, Verdict, Wanted, Way, apply, measure, serial, verify, with_references,
+    Evidence, FitTold, Reader, Told, Verdict, Wanted, Way, apply, measure, serial, verify,
+    with_references,
 };
 use desk::commission::{Chosen, ZerosBy, run as run_steps};
 use drawing::{make_folder, write_file, write_png};
@@ -27,10 +28,10 @@ use super::super::FAILED;
 use super::super::arguments::CalibrateDemo;
 use super::super::error::CliError;
 use super::error::CalibrateError;
-use super::fit::{calibrated, told as told_fit};
+use super::fit::fitted;
 use super::measure::Kept;
 use super::reader::{Simulated, TruePose};
-use super::{line, nm, read};
+use super::{line, lines, nm, read};
 use crate::attended::SimulatedMachine;
 
 /// Noise of the camera, nm.
@@ -96,31 +97,40 @@ pub(super) fn run(arguments: &CalibrateDemo) -> Result<ExitCode, CliError> {
     )?;
     let instrument = table.instrument(instrument.noise);
     let path = folder.join(CALIBRATION);
-    let (fit, calibration) = calibrated(
+    let fitted = fitted(
         &table,
         &instrument,
         &serial(&mut machine)?,
         None,
         &folder.join(MEASURED),
     )?;
+    let calibration = &fitted.calibration;
     write_file(&path, calibration.to_text().as_bytes())?;
-    say(&told_fit(&fit, &calibration, &table, &path))?;
+    let told = FitTold::new(&fitted, &table, &path.display().to_string());
+    say(&lines(&told.lines()))?;
     let evidence = Evidence {
         instrument: table.instrument(calibration.made.noise()),
         visits: table.visits.clone(),
-        references: table.references_but(&fit.outliers),
+        references: table.references_but(&fitted.fit.outliers),
         over: None,
     };
-    apply(&mut machine, &calibration, &evidence).map_err(CalibrateError::Apply)?;
+    apply(&mut machine, calibration, &evidence).map_err(CalibrateError::Apply)?;
     let fresh = Instrument::new(Kit::Camera2, calibration.made.noise());
-    let verified = verify(&mut machine, &mut reader, &calibration, &fresh, VERIFIED)
-        .map_err(CalibrateError::Verify)?;
+    let verified = verify(
+        &mut machine,
+        &mut reader,
+        calibration,
+        &fresh,
+        VERIFIED,
+        &mut |_, _| (),
+    )
+    .map_err(CalibrateError::Verify)?;
     let told = Told::new(&fresh, &verified);
-    say(&super::verify::text(&told))?;
+    say(&lines(&told.lines()))?;
     let after = compared(&mut machine, &stage)?;
     let truth = Truth { before, after };
     let report = Report {
-        calibration: &calibration,
+        calibration,
         measured: &table,
         verified: Some(&told),
         truth: Some(&truth),

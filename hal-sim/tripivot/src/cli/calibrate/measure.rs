@@ -7,11 +7,12 @@ use std::process::ExitCode;
 
 use crate::attended::SimulatedMachine;
 use calibration::plan::Stop;
-use calibration::table::{Table, note, to_text};
+use calibration::table::Table;
 use calibration::{Instrument, Kit, plan};
-use desk::calibrate::{MeasureError, Measured, Reader, Way, measure, serial, with_references};
+use desk::calibrate::{
+    MeasureError, Measured, Reader, Way, measure, rows, serial, with_references,
+};
 use desk::commission::{Attended, Machine};
-use desk::date::today;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::instruments::Beside;
 use hal_sim::rig::Told;
@@ -174,10 +175,9 @@ impl Kept {
         let written = || -> io::Result<Self> {
             let mut file = OpenOptions::new().create(true).append(true).open(path)?;
             if is_new {
-                let head = to_text(instrument, &[], Geometry::REFERENCE.radius_mm);
-                file.write_all(format!("{begun}\n{head}").as_bytes())?;
+                file.write_all(rows::head(begun, instrument).as_bytes())?;
             }
-            file.write_all(format!("# {}, from visit {}\n", today(), kept + 1).as_bytes())?;
+            file.write_all(rows::from(kept).as_bytes())?;
             let instrument = instrument.clone();
             Ok(Self { file, instrument })
         };
@@ -188,12 +188,7 @@ impl Kept {
 
     /// A row, with what it is and when above it.
     pub(super) fn keep(&mut self, stops: &[Stop], measured: &Measured) -> io::Result<()> {
-        let Measured { visit, clock_s, .. } = *measured;
-        let radius_mm = Geometry::REFERENCE.radius_mm;
-        let rows = to_text(&self.instrument, &[measured.visited], radius_mm);
-        let row = rows.lines().nth(1).unwrap_or_default();
-        let is_reference = visit > 0 && stops.get(visit) == stops.first();
-        let text = format!("{}\n{row}\n", note(visit, is_reference, clock_s));
+        let text = rows::row(&self.instrument, stops, measured);
         self.file.write_all(text.as_bytes())
     }
 }

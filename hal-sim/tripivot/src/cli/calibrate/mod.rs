@@ -6,7 +6,7 @@ pub(super) mod error;
 mod fit;
 mod measure;
 mod plan;
-mod reader;
+pub(super) mod reader;
 mod report;
 mod verify;
 
@@ -16,16 +16,14 @@ use std::process::ExitCode;
 
 use calibration::Noise;
 use calibration::file::Calibration;
+use desk::calibrate::Line;
 use kinematics::Geometry;
 
 use super::arguments::{CalibrateCommand, NoiseArguments};
 use super::error::CliError;
 use error::CalibrateError;
 
-/// Length over which theta is measured, m, unless its noise is told: two beams of an interferometer.
-const BASE_M: f64 = 0.05;
 const NM_PER_MM: f64 = 1e6;
-const URAD_PER_RAD: f64 = 1e6;
 
 pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
     match command {
@@ -42,12 +40,7 @@ pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
 
 /// In track radii and rad.
 fn noise(arguments: &NoiseArguments) -> Noise {
-    let radius_m = Geometry::REFERENCE.radius_mm * 1e-3;
-    Noise {
-        length: arguments.noise / radius_m,
-        angle_rad: arguments.noise_theta.unwrap_or(arguments.noise / BASE_M),
-        encoder_rad: Noise::ENCODER_RAD,
-    }
+    desk::calibrate::noise(arguments.noise, arguments.noise_theta)
 }
 
 /// A length in track radii in nm.
@@ -72,4 +65,10 @@ fn calibration(path: &Path) -> Result<Calibration, CalibrateError> {
 /// One line of what is told.
 fn line(what: &str, text: &str) -> String {
     format!("{what:<24}{text}\n")
+}
+
+/// Lines of what is told.
+fn lines(lines: &[Line]) -> String {
+    let lines = lines.iter().map(|told| line(&told.what, &told.text));
+    lines.collect()
 }

@@ -4,21 +4,16 @@ use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::io::Write;
 use std::process::{Command, Stdio};
-use std::rc::Rc;
 
-use calibration::plan::At;
-use calibration::{Instrument, Kit, Seen};
-use desk::calibrate::{Reader, Wanted};
+use calibration::{Instrument, Seen};
+use desk::calibrate::{Reader, Wanted, question, reading};
 use hal_sim::machine::devices::WiringParameters;
 use hal_sim::machine::instruments::Beside;
-use kinematics::Geometry;
-
-const UM_PER_MM: f64 = 1e3;
 
 /// A command that is run in a shell for each reading.
-pub(super) struct Asked {
-    pub(super) command: String,
-    pub(super) instrument: Instrument,
+pub(in super::super) struct Asked {
+    pub(in super::super) command: String,
+    pub(in super::super) instrument: Instrument,
 }
 
 impl Reader for Asked {
@@ -37,54 +32,16 @@ impl Reader for Asked {
             .map_err(failed)?;
         if let Some(mut input) = child.stdin.take() {
             // A command that does not look at the pose may have ended by now.
-            let _ = input.write_all(self.question(wanted).as_bytes());
+            let _ = input.write_all(question(&self.instrument, wanted).as_bytes());
         }
         let output = child.wait_with_output().map_err(failed)?;
         let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
         if !output.status.success() {
             return Err(format!("--reader ended with {}", output.status));
         }
-        let values: Option<Vec<f64>> = (text.split([' ', ',', '\t']))
-            .filter(|word| !word.is_empty())
-            .map(|word| word.parse().ok().filter(|value: &f64| value.is_finite()))
-            .collect();
-        (values.and_then(|values| self.seen(wanted.at, &values))).ok_or_else(|| {
+        reading(&self.instrument, wanted.at, &text).ok_or_else(|| {
             format!("--reader answered '{text}', which is no reading of this instrument")
         })
-    }
-}
-
-impl Asked {
-    fn question(&self, wanted: &Wanted) -> String {
-        let radius_mm = Geometry::REFERENCE.radius_mm;
-        let [x, y, theta_rad] = wanted.pose;
-        let mut values = vec![x * radius_mm, y * radius_mm, theta_rad.to_degrees()];
-        if let At::Mark { mark, camera } = wanted.at {
-            let drawn = [
-                self.instrument.marks.get(mark),
-                self.instrument.cameras.get(camera),
-            ];
-            let drawn = drawn.into_iter().flatten().flatten();
-            values.extend(drawn.map(|value| value * radius_mm));
-        }
-        let words: Vec<String> = values.iter().map(|value| format!("{value:.9}")).collect();
-        words.join(" ") + "\n"
-    }
-
-    fn seen(&self, at: At, values: &[f64]) -> Option<Seen> {
-        let radii = |mm: f64| mm / Geometry::REFERENCE.radius_mm;
-        match (self.instrument.kit, at, values) {
-            (Kit::Xyt, _, &[x, y, theta]) => {
-                Some(Seen::Pose([radii(x), radii(y), theta.to_radians()]))
-            }
-            (Kit::Xy, _, &[x, y]) => Some(Seen::Place([radii(x), radii(y)])),
-            (Kit::Theta, _, &[theta]) => Some(Seen::Turn(theta.to_radians())),
-            (Kit::Camera | Kit::Camera2 | Kit::Balls, At::Mark { mark, camera }, &[x_um, y_um]) => {
-                let off = [radii(x_um / UM_PER_MM), radii(y_um / UM_PER_MM)];
-                Some(Seen::Mark { mark, camera, off })
-            }
-            _ => None,
-        }
     }
 }
 
@@ -98,15 +55,15 @@ impl Reader for NoInstrument {
 }
 
 /// The simulated instrument, which sees the true pose.
-pub(super) struct Simulated {
-    pub(super) instrument: Beside,
-    pub(super) true_pose: TruePose,
+pub(in super::super) struct Simulated {
+    pub(in super::super) instrument: Beside,
+    pub(in super::super) true_pose: TruePose,
 }
 
 /// The platform's true pose in the frames of its controller, in which somebody sets instruments up: what a controller that was commissioned
 /// calls pivot 1 is the ring that bridge 1 drives, and its guide lay along x in the jig.
-pub(super) struct TruePose {
-    in_m: Rc<Cell<[f64; 3]>>,
+pub(in super::super) struct TruePose {
+    in_m: Box<dyn Fn() -> [f64; 3]>,
     /// By how much the controller's frame of the platform is turned in the platform.
     platform_rad: f64,
     /// By how much its frame of the base is turned in the base; known from the first pose on.
@@ -114,9 +71,13 @@ pub(super) struct TruePose {
 }
 
 impl TruePose {
-    pub(super) fn new(in_m: Rc<Cell<[f64; 3]>>, wiring: &WiringParameters) -> Self {
+    /// `in_m`: as the machine has it, m, m and rad.
+    pub(in super::super) fn new(
+        in_m: impl Fn() -> [f64; 3] + 'static,
+        wiring: &WiringParameters,
+    ) -> Self {
         Self {
-            in_m,
+            in_m: Box::new(in_m),
             platform_rad: TAU / 3.0 * wiring.ring_of_bridge(0) as f64,
             base_rad: Cell::new(None),
         }
@@ -126,7 +87,7 @@ impl TruePose {
     pub(super) fn get(&self, commanded_rad: f64) -> [f64; 3] {
         /// Frames differ by whole ones of these.
         const STEP_RAD: f64 = TAU / 12.0;
-        let [x, y, theta_rad] = self.in_m.get();
+        let [x, y, theta_rad] = (self.in_m)();
         let base_rad = self.base_rad.get().unwrap_or_else(|| {
             let off_rad = theta_rad + self.platform_rad - commanded_rad;
             STEP_RAD * (off_rad / STEP_RAD).round()

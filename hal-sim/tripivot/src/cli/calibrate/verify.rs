@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use calibration::{Instrument, Noise};
-use desk::calibrate::{Told, Verdict, verify};
+use desk::calibrate::{Told, Verdict, noise, verify};
 use desk::date::age_days;
 
 use super::super::FAILED;
@@ -13,7 +13,7 @@ use super::super::error::CliError;
 use super::super::json;
 use super::error::CalibrateError;
 use super::measure::opened;
-use super::{BASE_M, calibration, line, nm};
+use super::{calibration, lines};
 
 /// Days after which a calibration is worth a new one: guides wear, and are set anew.
 const OLD_DAYS: u64 = 365;
@@ -22,17 +22,14 @@ pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
     let calibration = calibration(&arguments.file)?;
     let made = &calibration.made;
     let told = made.noise();
-    let noise = Noise {
-        length: arguments
-            .noise
-            .map_or(told.length, |noise_m| noise_m * 1e9 / nm(1.0)),
-        angle_rad: match (arguments.noise_theta, arguments.noise) {
-            (Some(theta_rad), _) => theta_rad,
-            (None, Some(noise_m)) => noise_m / BASE_M,
-            (None, None) => told.angle_rad,
-        },
+    let noise = arguments.noise.map_or(told, |noise_m| Noise {
         // The machine's scatter is the same before any instrument.
-        ..told
+        encoder_rad: told.encoder_rad,
+        ..noise(noise_m, None)
+    });
+    let noise = Noise {
+        angle_rad: arguments.noise_theta.unwrap_or(noise.angle_rad),
+        ..noise
     };
     let instrument = Instrument::new(arguments.kit.unwrap_or(made.kit), noise);
     let (mut machine, mut reader) =
@@ -43,13 +40,14 @@ pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
         &calibration,
         &instrument,
         arguments.poses,
+        &mut |_, _| (),
     )
     .map_err(CalibrateError::Verify)?;
     let told = Told::new(&instrument, &verified);
     if arguments.json {
         json::print(&told)?;
     } else {
-        (io::stdout().write_all(text(&told).as_bytes())).map_err(CliError::output)?;
+        (io::stdout().write_all(lines(&told.lines()).as_bytes())).map_err(CliError::output)?;
     }
     let temperature = machine.ask("TMP?").ok().flatten().unwrap_or_default();
     for warning in warnings(age_days(&made.date), &temperature) {
@@ -72,80 +70,6 @@ fn warnings(age_days: Option<u64>, temperature: &str) -> Vec<String> {
         .filter(|_| is_off)
         .map(|over_k| format!("the machine is {over_k} K warmer than when it was calibrated"));
     old.into_iter().chain(off).collect()
-}
-
-pub(super) fn text(document: &Told) -> String {
-    let poses = document.visits / 2;
-    let mut text = line(
-        "verified",
-        &format!(
-            "{}, {poses} fresh poses, each from both sides",
-            document.kit
-        ),
-    );
-    let kinds = [
-        ("x and y", "um", &document.xy_um),
-        ("theta", "urad", &document.theta_urad),
-    ];
-    for (what, unit, kind) in kinds {
-        let Some(kind) = kind else { continue };
-        let told = |more: &str, told: String| line(&format!("{what}{more}"), &told);
-        text += &told(
-            "",
-            format!(
-                "{:.4} {unit} rms seen, {:.4} of it noise and scatter: {}, {:.4} predicted",
-                kind.seen,
-                kind.noise,
-                if kind.of_stage > 0.0 {
-                    format!("{:.4} of the stage", kind.of_stage)
-                } else {
-                    "nothing of the stage to be seen".to_owned()
-                },
-                kind.predicted
-            ),
-        );
-        text += &told(
-            ", over predicted",
-            format!(
-                "{:.3}, noise in both; from {} to {} is as predicted",
-                kind.ratio, document.as_predicted[0], document.as_predicted[1]
-            ),
-        );
-        text += &told(
-            ", largest",
-            format!(
-                "{:.4} {unit}, on visit {}",
-                kind.largest, kind.largest_at_visit
-            ),
-        );
-        text += &told(
-            ", both sides",
-            format!(
-                "{:.4} {unit} rms apart, {:.4} by noise and scatter alone",
-                kind.both_sides_apart,
-                kind.noise * std::f64::consts::SQRT_2
-            ),
-        );
-        text += &told(
-            ", as drawn",
-            format!("{:.3} {unit} rms without it", kind.as_drawn),
-        );
-    }
-    if let Some(scale) = document.scale {
-        let told = format!("{scale:.7} of the instrument's, taken out: the calibration knows none");
-        text += &line("scale", &told);
-    }
-    let verdict = match &*document.verdict {
-        "worse than predicted" | "worse than without it" => format!(
-            "{}: another machine's, damaged, out of date, or the instrument is not what was said; `tripivot calibrate undo` takes it out of force",
-            document.verdict
-        ),
-        "better than predicted" => {
-            "better than predicted: the noise is not what was said".to_owned()
-        }
-        verdict => verdict.to_owned(),
-    };
-    text + &line("verdict", &verdict)
 }
 
 #[cfg(test)]

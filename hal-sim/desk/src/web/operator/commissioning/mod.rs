@@ -15,13 +15,7 @@
 //! | here | the handle that pages share |
 //! | `status` | what pages are told |
 //! | `worker` | the thread that runs the steps and tries gains |
-//! | `machine` | the machine as the steps see it, over the way that its page has to the controller |
-//! | `control` | what reaches a run from outside: that a task is done, that it is to end |
-//! | `files` | plots, tables and reports, for browsers to fetch |
 
-mod control;
-mod files;
-mod machine;
 mod status;
 mod worker;
 
@@ -31,19 +25,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use serde::Deserialize;
-use tokio::runtime::Handle;
 use tokio::sync::watch;
 
 use super::journal::Journal;
-use crate::commission::{Numbers, Task};
-use crate::web::bridge::Bridge;
-use control::Control;
-pub(in crate::web) use files::Files;
+use super::runs::{Files, Ordered, Person, Reach};
+use crate::commission::Numbers;
 use status::Told;
 use worker::Worker;
 
-/// Who does with a simulated machine what a person does with a real one.
-pub type Person = Arc<dyn Fn(Task) + Send + Sync>;
+/// Where its files are.
+const FOLDER: &str = "/commissioning/";
 
 /// What a page wants.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -81,47 +72,32 @@ pub(in crate::web) enum Order {
     Undo,
 }
 
-/// An order, and whose it is.
-#[derive(Debug, PartialEq)]
-pub(in crate::web) struct Ordered {
-    pub order: Order,
-    /// Whoever uses the page.
-    pub who: String,
-    pub page: u64,
-    /// Of the page's way to the controller.
-    pub key: String,
-}
-
 /// The handle that all pages share.
 #[derive(Clone)]
 pub(in crate::web) struct Commissioning {
     /// For the thread.
-    orders: Arc<Mutex<Sender<Ordered>>>,
-    control: Arc<Control>,
+    orders: Arc<Mutex<Sender<Ordered<Order>>>>,
+    reach: Reach,
     told: Arc<Told>,
     files: Files,
-    bridge: Bridge,
 }
 
 impl Commissioning {
-    /// To be called within the runtime.
-    pub fn start(bridge: Bridge, journal: Journal, person: Option<Person>) -> io::Result<Self> {
+    /// Its thread begins.
+    pub fn start(reach: Reach, journal: Journal, person: Option<Person>) -> io::Result<Self> {
         let (orders, incoming) = mpsc::channel();
         let this = Self {
             orders: Arc::new(Mutex::new(orders)),
-            control: Arc::default(),
+            reach: reach.clone(),
             told: Arc::new(Told::new()),
-            files: Files::default(),
-            bridge: bridge.clone(),
+            files: Files::new(FOLDER),
         };
         let worker = Worker {
-            control: Arc::clone(&this.control),
+            reach,
             told: Arc::clone(&this.told),
             files: this.files.clone(),
-            bridge,
             journal,
             person,
-            runtime: Handle::current(),
             tunable: None,
             before: None,
             earlier: None,
@@ -133,33 +109,19 @@ impl Commissioning {
     }
 
     /// Has it done; the state tells what came of it.
-    pub fn order(&self, ordered: Ordered) {
-        match ordered.order {
-            Order::Done => self.control.done(),
+    pub fn order(&self, ordered: Ordered<Order>) {
+        match &ordered.order {
+            Order::Done => self.reach.control.done(),
             Order::End => {
-                self.control.end("an operator");
-                // Where nobody is reached, the run finds that itself.
-                let _ = self.bridge.stop();
+                self.reach.end();
             }
             // One after the other would surprise whoever has ordered it minutes before.
-            _ if self.control.begin(ordered.page) => {
+            _ if self.reach.control.begin(ordered.page) => {
                 let orders = self.orders.lock().unwrap_or_else(PoisonError::into_inner);
                 // Its thread ends with the server only.
                 let _ = orders.send(ordered);
             }
-            _ => {}
-        }
-    }
-
-    /// A page has stopped the stage.
-    pub fn stopped(&self, who: &str) {
-        self.control.end(&format!("STOP by {who}"));
-    }
-
-    /// A page is gone: what it has begun does not go on with nobody there to stop it.
-    pub fn gone(&self, page: u64) {
-        if self.control.is_of(page) {
-            self.control.end("its page, which is gone");
+            order => self.told.refuses(worker::what(order)),
         }
     }
 

@@ -5,10 +5,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 use tokio::sync::watch;
 
-use crate::commission::{Done, Finding, MOST_SENSITIVITY, Numbers, Plot, STEPS, Step, Task, Worth};
+use super::super::runs::{Failed, Files, PlotPlace, StepStatus, UNDER_WAY, places};
+use crate::commission::{Done, MOST_SENSITIVITY, Numbers, STEPS, Step, Task, Worth};
 use crate::web::bridge::json;
-
-use super::files::Files;
 
 /// What pages are told.
 #[derive(Clone, Debug, Serialize)]
@@ -31,33 +30,6 @@ pub(super) struct Status {
     /// Where what was in force before is; it can be given back.
     pub before: Option<String>,
     pub tuning: Option<Tuning>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct StepStatus {
-    pub name: &'static str,
-    pub about: &'static str,
-    /// `waits`, `runs`, `done`, `failed`.
-    pub state: &'static str,
-    pub seconds: f64,
-    pub findings: Vec<FindingStatus>,
-    pub plots: Vec<PlotPlace>,
-    /// What is wrong, and what to do.
-    pub failure: Option<[String; 2]>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct FindingStatus {
-    pub name: String,
-    pub value: String,
-    pub limit: String,
-    pub passed: bool,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct PlotPlace {
-    pub path: String,
-    pub caption: String,
 }
 
 /// What the person is asked for.
@@ -91,16 +63,6 @@ pub(super) struct Tried {
     pub plots: Vec<PlotPlace>,
 }
 
-/// Plots as files.
-pub(super) fn places(plots: &[Plot], files: &Files) -> Vec<PlotPlace> {
-    (plots.iter())
-        .map(|plot| PlotPlace {
-            path: files.put_plot(&plot.svg),
-            caption: plot.caption.clone(),
-        })
-        .collect()
-}
-
 impl Tuning {
     pub fn new(gains: Numbers, measured: Vec<Worth>, plots: Vec<PlotPlace>) -> Self {
         Self {
@@ -113,37 +75,15 @@ impl Tuning {
     }
 }
 
-impl StepStatus {
-    fn waiting(step: &Step) -> Self {
-        Self {
-            name: step.name,
-            about: step.about,
-            state: "waits",
-            seconds: 0.0,
-            findings: Vec::new(),
-            plots: Vec::new(),
-            failure: None,
-        }
-    }
-
-    fn take(&mut self, done: &Done, files: &Files) {
-        let told = |finding: &Finding| FindingStatus {
-            name: finding.name.clone(),
-            value: finding.value.clone(),
-            limit: finding.limit.clone(),
-            passed: finding.passed,
-        };
-        self.seconds = done.seconds;
-        self.findings = done.found.findings.iter().map(told).collect();
-        self.plots = places(&done.found.plots, files);
-        self.failure = (done.failure.as_ref())
-            .map(|failure| [failure.what.clone(), failure.advice.to_owned()]);
-        self.state = if self.failure.is_some() {
-            "failed"
-        } else {
-            "done"
-        };
-    }
+/// A step as it has ended.
+fn take(step: &mut StepStatus, done: &Done, files: &Files) {
+    step.seconds = done.seconds;
+    step.findings = done.found.findings.iter().map(Into::into).collect();
+    step.plots = places(&done.found.plots, files);
+    step.end(done.failure.as_ref().map(|failure| Failed {
+        what: failure.what.clone(),
+        advice: failure.advice.to_owned(),
+    }));
 }
 
 /// The state, and those who are told each change of it.
@@ -197,7 +137,10 @@ impl Told {
             (status.runs, status.what, status.good) = (true, what, true);
             status.said.clear();
             if let Some(steps) = steps {
-                status.steps = steps.iter().map(|step| StepStatus::waiting(step)).collect();
+                status.steps = (steps
+                    .iter()
+                    .map(|step| StepStatus::waiting(step.name, step.about)))
+                .collect();
                 status.report = None;
                 next(&mut status.steps);
             }
@@ -217,13 +160,24 @@ impl Told {
         });
     }
 
+    /// An order that comes while another is under way.
+    pub fn refuses(&self, what: &'static str) {
+        self.change(|status| {
+            // Of what runs here, pages are told all along.
+            if !status.runs {
+                (status.what, status.good) = (what, false);
+                UNDER_WAY.clone_into(&mut status.said);
+            }
+        });
+    }
+
     /// A step has ended.
     pub fn step(&self, done: &Done, files: &Files) {
         self.change(|status| {
             status.asks = None;
             let step = (status.steps.iter_mut()).find(|step| step.name == done.step.name);
             if let Some(step) = step {
-                step.take(done, files);
+                take(step, done, files);
             }
             if done.failure.is_none() {
                 next(&mut status.steps);

@@ -3,33 +3,28 @@
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
-use tokio::runtime::Handle;
-
-use super::control::Control;
-use super::files::{FOLDER, Files};
-use super::machine::PageMachine;
-use super::status::{Told, Tried, Tuning, places};
-use super::{Order, Ordered, Person};
+use super::super::runs::{Files, Ordered, PageMachine, Person, Reach, places};
+use super::Order;
+use super::status::{Told, Tried, Tuning};
 use crate::commission::{
     Backup, Chosen, Conditions, Done, Machine, Numbers, Ran, Results, Tunable, ZerosBy, page, run,
 };
 use crate::date::today;
 use crate::record::RecordError;
-use crate::web::bridge::Bridge;
 use crate::web::operator::journal::Journal;
 
+/// What it is called where others ask who commands.
+const NAME: &str = "commissioning";
 const REPORT: &str = "report.html";
 const BEFORE: &str = "before.txt";
 
 /// See the module.
 pub(super) struct Worker {
-    pub control: Arc<Control>,
+    pub reach: Reach,
     pub told: Arc<Told>,
     pub files: Files,
-    pub bridge: Bridge,
     pub journal: Journal,
     pub person: Option<Person>,
-    pub runtime: Handle,
     /// The loops that were measured last.
     pub tunable: Option<Tunable>,
     /// What was in force before the last commissioning.
@@ -43,7 +38,7 @@ type Came = Result<String, String>;
 
 impl Worker {
     /// Until the server ends.
-    pub fn run(mut self, orders: &Receiver<Ordered>) {
+    pub fn run(mut self, orders: &Receiver<Ordered<Order>>) {
         for ordered in orders {
             let what = what(&ordered.order);
             let came = self.carry_out(&ordered, what);
@@ -54,11 +49,15 @@ impl Worker {
             self.journal.note(&ordered.who, &format!("{what}…"), &said);
             self.told.ends(good, said);
             self.files.keep_plots(&self.told.plots());
-            self.control.over();
+            self.reach.control.over();
         }
     }
 
-    fn carry_out(&mut self, Ordered { order, key, .. }: &Ordered, what: &'static str) -> Came {
+    fn carry_out(
+        &mut self,
+        Ordered { order, key, .. }: &Ordered<Order>,
+        what: &'static str,
+    ) -> Came {
         let chosen = match order {
             Order::Commission {
                 from, without_jig, ..
@@ -104,8 +103,8 @@ impl Worker {
         machine.leave();
         let (conditions, Ran { done, tunable }) = ran?;
         let changes = self.changes(&conditions, &done, keeps);
-        self.files
-            .put(REPORT, &page(&conditions, &done, changes.as_deref()));
+        let report = page(&conditions, &done, changes.as_deref());
+        let report = self.files.put(REPORT, &report);
         for table in done.iter().flat_map(|done| &done.found.tables) {
             self.files.put(&format!("{}.csv", table.name), &table.csv);
         }
@@ -113,7 +112,7 @@ impl Worker {
             .find(|done| !done.found.tables.is_empty())
             .map(|done| places(&done.found.plots, &self.files));
         self.told.change(|status| {
-            status.report = Some(format!("{FOLDER}{REPORT}"));
+            status.report = Some(report);
             status.tables = self.files.tables();
             if let Some(tunable) = &tunable {
                 status.tuning = Some(Tuning::new(
@@ -154,9 +153,8 @@ impl Worker {
         };
         if chosen.keeps() {
             let before = Backup::of(machine)?;
-            self.files.put(BEFORE, &before.to_string());
+            let path = self.files.put(BEFORE, &before.to_string());
             self.before = Some(before);
-            let path = format!("{FOLDER}{BEFORE}");
             self.told.change(|status| status.before = Some(path));
         }
         let ran = run(machine, chosen, &mut |done| {
@@ -231,23 +229,15 @@ impl Worker {
         Ok("computed from the loops that were measured; nothing is changed".to_owned())
     }
 
-    /// The machine over the way with this key if that one owns the stage, and else over one of its own.
     fn machine(&self, key: &str) -> Result<PageMachine, String> {
-        let own =
-            (self.bridge.way()).map_err(|error| format!("no way to the controller: {error}"))?;
-        let owners = self.runtime.block_on(self.bridge.owners_way(key));
-        Ok(PageMachine {
-            own,
-            owners,
-            runtime: self.runtime.clone(),
-            control: Arc::clone(&self.control),
-            told: Arc::clone(&self.told),
-            person: self.person.clone(),
-            scale_periods: None,
-            place: self.bridge.place(),
-            is_ended: false,
-            period_s: None,
-        })
+        let mut machine = PageMachine::open(&self.reach, key, NAME)?;
+        machine.person.clone_from(&self.person);
+        let told = Arc::clone(&self.told);
+        machine.asks = Box::new(move |asked| match asked {
+            Some((task, is_simulated)) => told.asks(task, is_simulated),
+            None => told.answered(),
+        });
+        Ok(machine)
     }
 }
 
@@ -266,7 +256,7 @@ fn ended(machine: &mut PageMachine, error: RecordError) -> String {
 }
 
 /// What an order is called.
-const fn what(order: &Order) -> &'static str {
+pub(super) const fn what(order: &Order) -> &'static str {
     match order {
         Order::Commission { .. } => "commissioning",
         Order::Only { .. } => "one step of commissioning",

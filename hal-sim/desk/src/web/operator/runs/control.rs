@@ -8,7 +8,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(100);
 
 /// See the module.
 #[derive(Default)]
-pub(super) struct Control {
+pub(in crate::web) struct Control {
     state: Mutex<State>,
     changed: Condvar,
 }
@@ -19,7 +19,13 @@ struct State {
     page: Option<u64>,
     /// By whom it is to end.
     ended: Option<String>,
+    /// Whether the run knows that.
+    knows: bool,
     is_done: bool,
+    /// Whether it is to wait where it stands.
+    is_paused: bool,
+    /// What the person says that an instrument reads.
+    reading: Option<String>,
 }
 
 impl Control {
@@ -65,14 +71,50 @@ impl Control {
         self.changed.notify_all();
     }
 
-    /// By whom it is to end.
+    /// By whom it is to end; told once, as what follows brings the stage to rest.
     pub fn ended(&self) -> Option<String> {
-        self.state().ended.clone()
+        let mut state = self.state();
+        if state.knows {
+            return None;
+        }
+        state.knows = state.ended.is_some();
+        state.ended.clone()
     }
 
     /// What was said before the person was asked does not count.
     pub fn ask(&self) {
         self.state().is_done = false;
+    }
+
+    /// It waits where it stands, as soon as it can, or goes on.
+    pub fn pause(&self, is_paused: bool) {
+        self.state().is_paused = is_paused;
+        self.changed.notify_all();
+    }
+
+    /// Waits while it is paused and not to end.
+    pub fn stay_paused(&self) {
+        self.wait_while(|state| state.is_paused);
+    }
+
+    /// The person says what an instrument reads.
+    pub fn read(&self, text: &str) {
+        self.state().reading = Some(text.to_owned());
+        self.changed.notify_all();
+    }
+
+    /// Waits for that; none where it is to end.
+    pub fn reading(&self) -> Option<String> {
+        self.state().reading = None;
+        self.wait_while(|state| state.reading.is_none());
+        self.state().reading.take()
+    }
+
+    fn wait_while(&self, waits: impl Fn(&State) -> bool) {
+        let mut state = self.state();
+        while waits(&state) && state.ended.is_none() {
+            state = (self.changed.wait(state)).unwrap_or_else(PoisonError::into_inner);
+        }
     }
 
     /// Waits until the person says that it is done, or `is_over`.
@@ -90,6 +132,41 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_is_paused_waits_and_ends_all_the_same() {
+        let control = Control::default();
+        assert!(control.begin(1));
+        control.stay_paused();
+        control.pause(true);
+        std::thread::scope(|scope| {
+            let waits = scope.spawn(|| control.stay_paused());
+            control.pause(false);
+            waits.join().expect("it goes on");
+            control.pause(true);
+            let waits = scope.spawn(|| (control.stay_paused(), control.reading()));
+            control.end("Ada");
+            assert_eq!(waits.join().expect("it ends").1, None);
+        });
+        control.over();
+        assert!(control.begin(2));
+        control.stay_paused();
+    }
+
+    #[test]
+    fn a_reading_counts_once_it_is_asked_for() {
+        let control = Control::default();
+        assert!(control.begin(1));
+        control.read("before");
+        std::thread::scope(|scope| {
+            let waits = scope.spawn(|| control.reading());
+            while !waits.is_finished() {
+                control.read("1 2 3");
+                std::thread::yield_now();
+            }
+            assert_eq!(waits.join().expect("it was read").as_deref(), Some("1 2 3"));
+        });
+    }
+
+    #[test]
     fn one_order_at_a_time_and_the_first_end_counts() {
         let control = Control::default();
         control.end("nobody");
@@ -99,6 +176,7 @@ mod tests {
         control.end("Ada");
         control.end("Bob");
         assert_eq!(control.ended().as_deref(), Some("Ada"));
+        assert_eq!(control.ended(), None, "it is told once");
         control.wait(|| false);
         control.over();
         assert!(control.begin(2) && control.ended().is_none());

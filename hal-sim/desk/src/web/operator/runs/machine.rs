@@ -1,4 +1,4 @@
-//! The machine as the steps see it: lines over the way that its page has to the controller, or over one of its own, and whoever looks at a page for
+//! The machine as a run sees it: lines over the way that its page has to the controller, or over one of its own, and whoever looks at a page for
 //! what only a person can do.
 
 use std::io;
@@ -8,9 +8,8 @@ use std::time::{Duration, Instant};
 
 use tokio::runtime::Handle;
 
-use super::Person;
 use super::control::Control;
-use super::status::Told;
+use super::{Person, Reach};
 use crate::commission::{Machine, Task};
 use crate::record::RecordError;
 use crate::record::desk::{hint, strange};
@@ -27,35 +26,57 @@ const PATIENCE: f64 = 200.0;
 const LEAST_PATIENCE_S: f64 = 10.0;
 /// What the jig takes to hold, by a simulated person, s.
 const JIG_S: f64 = 0.1;
-/// What it is called where others ask who commands.
-const NAME: &str = "commissioning";
+/// Who is told what a person is asked for, and whether somebody simulated does it; none once that is done.
+pub(in super::super) type Asks = Box<dyn Fn(Option<(Task, bool)>) + Send>;
 
 /// See the module.
-pub(super) struct PageMachine {
+pub(in super::super) struct PageMachine {
     /// Its own way to the controller.
-    pub own: HeldWay,
+    own: HeldWay,
     /// That of the page that began it, where that page owns the stage.
-    pub owners: Option<Arc<Way>>,
-    pub runtime: Handle,
-    pub control: Arc<Control>,
-    pub told: Arc<Told>,
+    owners: Option<Arc<Way>>,
+    runtime: Handle,
+    control: Arc<Control>,
+    /// What it is called where others ask who commands.
+    name: &'static str,
     pub person: Option<Person>,
+    pub asks: Asks,
     /// As whoever has begun it says.
     pub scale_periods: Option<u32>,
-    pub place: String,
-    /// Whether it has been told to end: what follows brings the stage to rest.
-    pub is_ended: bool,
+    place: String,
     /// Seconds in a tick, once they are known.
-    pub period_s: Option<f64>,
+    period_s: Option<f64>,
 }
 
 impl PageMachine {
+    /// Over the way with this key if that one owns the stage, and else over one of its own. Nobody is beside it.
+    pub fn open(reach: &Reach, key: &str, name: &'static str) -> Result<Self, String> {
+        let Reach {
+            bridge,
+            runtime,
+            control,
+        } = reach;
+        let own = bridge.way();
+        Ok(Self {
+            own: own.map_err(|error| format!("no way to the controller: {error}"))?,
+            owners: runtime.block_on(bridge.owners_way(key)),
+            runtime: runtime.clone(),
+            control: Arc::clone(control),
+            name,
+            person: None,
+            asks: Box::new(|_| ()),
+            scale_periods: None,
+            place: bridge.place(),
+            period_s: None,
+        })
+    }
+
     /// Others may look, and stop, and nothing else, until [`Self::leave`].
     pub fn take_over(&mut self) -> Result<(), RecordError> {
         if self.owners.is_some() {
             return Ok(());
         }
-        match self.ask(&format!("OWN 1 {NAME}")) {
+        match self.ask(&format!("OWN 1 {}", self.name)) {
             // An older controller does not know it, and does without.
             Err(RecordError::Refused { code: 2, .. }) => Ok(()),
             answer => answer.map(drop),
@@ -96,13 +117,10 @@ impl PageMachine {
     }
 
     /// Told to end once; what follows brings the stage to rest.
-    fn check_end(&mut self) -> Result<(), RecordError> {
+    fn check_end(&self) -> Result<(), RecordError> {
         match self.control.ended() {
-            Some(by) if !self.is_ended => {
-                self.is_ended = true;
-                Err(RecordError::Ended(by))
-            }
-            _ => Ok(()),
+            Some(by) => Err(RecordError::Ended(by)),
+            None => Ok(()),
         }
     }
 
@@ -159,7 +177,7 @@ impl Machine for PageMachine {
     fn request(&mut self, task: Task) -> Result<(), RecordError> {
         self.check_end()?;
         self.control.ask();
-        self.told.asks(task, self.person.is_some());
+        (self.asks)(Some((task, self.person.is_some())));
         match (&self.person, task) {
             (Some(person), _) => {
                 person(task);
@@ -171,7 +189,7 @@ impl Machine for PageMachine {
             (None, Task::Turn) => {}
             (None, Task::PutOnJig) => {
                 self.control.wait(|| false);
-                self.told.answered();
+                (self.asks)(None);
                 self.check_end()?;
             }
         }
