@@ -89,6 +89,16 @@ impl Load {
         let ([x, y], m) = (self.moment, self.mass);
         Matrix3::new(m, 0.0, -y, 0.0, m, x, -y, x, self.inertia)
     }
+
+    /// What it is at the rings, kg m^2.
+    #[must_use]
+    pub fn at_rings(&self, place: &Place) -> Matrix3<f64> {
+        let inverse = place
+            .jacobian
+            .try_inverse()
+            .unwrap_or_else(|| Matrix3::repeat(f64::NAN));
+        inverse.transpose() * self.mass_matrix() * inverse
+    }
 }
 
 /// Angles of rings and motors for a torque of 1 N m at each motor, rad.
@@ -105,11 +115,7 @@ impl Chain {
     #[must_use]
     pub fn inertia(&self, place: &Place) -> Matrix3<f64> {
         let drives = Matrix3::identity() * (self.motor_inertia + self.ring_inertia);
-        let inverse = place
-            .jacobian
-            .try_inverse()
-            .unwrap_or_else(|| Matrix3::repeat(f64::NAN));
-        drives + inverse.transpose() * self.load.mass_matrix() * inverse
+        drives + self.load.at_rings(place)
     }
 
     /// Rate of a motor that gives a torque while its ring turns at a rate: the transmission winds up between them. `None` beside the

@@ -8,6 +8,7 @@
 //! | [`mod@winding`] | resistance and inductance from pulses at rest; opens, shorts, polarity |
 //! | [`mod@frequency_response`] | responses of all pivots to all drives, in open or closed loop, with their deviations |
 //! | [`mod@friction`] | friction and motor constants from steady rates both ways |
+//! | [`mod@gear`] | cyclic errors of the gears, from steady rates both ways |
 //! | [`mod@subdivision`] | errors of the encoders within the periods of their scales, from a steady rate |
 //! | [`mod@drive_model`] | windings, inertias, springs and dampers from the responses |
 //! | [`mod@closed_loop`] | plant and sensitivity as they were measured with the servo on |
@@ -36,6 +37,7 @@ pub mod closed_loop;
 pub mod drive_model;
 pub mod frequency_response;
 pub mod friction;
+pub mod gear;
 pub mod guide_ends;
 mod least_squares;
 pub mod platform;

@@ -20,6 +20,8 @@ pub const SETTLING_COUNTS: u32 = 0x5450_0400;
 pub const EXCITATION_V: u32 = 0x5450_0D00;
 pub const EXCITATION_WAY: u32 = 0x5450_0D01;
 pub const EXCITATION_RATE: u32 = 0x5450_0D02;
+/// Of the platform, deg/s.
+pub const ROTATION_SPEED: u32 = 0x5450_0103;
 pub const PIVOT_RATE: u32 = 0x5450_0106;
 pub const PIVOT_ACCELERATION: u32 = 0x5450_0107;
 pub const FAULT_STOP: u32 = 0x5450_050F;
@@ -31,6 +33,13 @@ pub const DEAD_TIME: u32 = 0x5450_0814;
 pub const DEAD_TIME_KNEE: u32 = 0x5450_0815;
 pub const VISCOUS: u32 = 0x5450_0818;
 pub const COULOMB: u32 = 0x5450_0819;
+/// A ring with its drive; and what of that is the motor's with its side of the gear, of all and of each.
+pub const INERTIA: u32 = 0x5450_0817;
+pub const MOTORS_INERTIA: u32 = 0x5450_0840;
+pub const MOTOR_INERTIA: u32 = 0x5450_0850;
+/// Cyclic error of the gear, urad, and its phase, deg.
+pub const GEAR_ERROR: u32 = 0x5450_0A1C;
+pub const GEAR_PHASE: u32 = 0x5450_0A1D;
 pub const TRACK_RADIUS: u32 = 0x5450_0200;
 pub const PLATFORM_MASS: u32 = 0x5450_0700;
 pub const PLATFORM_INERTIA: u32 = 0x5450_0701;

@@ -65,8 +65,18 @@ pub fn figures(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figu
     let mut figures = loops(all);
     figures.extend(drives(machine, all, warmth));
     figures.extend(mechanics(machine, all));
+    figures.extend(gears(machine, all));
     figures.extend(guides(machine, all));
     figures
+}
+
+fn gears(machine: &StageParameters, all: &[Done]) -> Figures {
+    let of = |name: &str| number(all, "gears", name, "urad");
+    let truth_urad = 1e6 * machine.plant.gear.cyclic_error_rad;
+    let gears = (1..=3).map(|pivot| percent(of(&format!("gear of pivot {pivot}")), truth_urad));
+    let [with, without] =
+        ["", "not "].map(|not| of(&format!("following error, gears {not}made up for")));
+    vec![("gears", worst(gears)), ("gears left", with / without)]
 }
 
 fn guides(machine: &StageParameters, all: &[Done]) -> Figures {

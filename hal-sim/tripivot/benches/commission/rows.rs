@@ -21,7 +21,7 @@ pub struct Row {
 /// A figure's short name, what it is, digits behind the point, and its limit.
 type Figure = (&'static str, &'static str, usize, Option<f64>);
 
-const FIGURES: [Figure; 26] = [
+const FIGURES: [Figure; 28] = [
     ("time", "simulated time, s", 0, Some(300.0)),
     ("questions", "questions to the person", 0, Some(2.0)),
     ("ms safe", "Ms with safe gains", 2, None),
@@ -54,6 +54,13 @@ const FIGURES: [Figure; 26] = [
     ("L", "inductance, % off", 2, Some(5.0)),
     ("friction", "Coulomb friction, % off", 2, Some(5.0)),
     ("total", "friction at 1 rad/s, % off", 2, Some(5.0)),
+    ("gears", "cyclic error of a gear, % off", 2, None),
+    (
+        "gears left",
+        "following error while turning, gears made up for over not",
+        2,
+        None,
+    ),
     ("guides", "friction of a carriage, % off", 2, Some(15.0)),
     ("give", "stiffness across a guide, % off", 2, Some(15.0)),
     ("ring", "inertia at a ring, % off", 2, Some(5.0)),

@@ -175,7 +175,16 @@ fn tell_platform(
         mechanical.deviations[10],
         LOAD_INERTIA,
     ));
+    found.push(Finding::told(
+        "the motor's part of that, by the resonances",
+        format!(
+            "{:.5} kg m^2, +-{:.1} %",
+            chain.motor_inertia,
+            100.0 * mechanical.deviations[0]
+        ),
+    ));
     found.number("inertia of a motor with its ring", drive, "kg m^2");
+    found.number("inertia of a motor", chain.motor_inertia, "kg m^2");
     found.number("mass of platform and load", mass_kg, "kg");
     found.number("inertia of platform and load", load.inertia, "kg m^2");
     for (number, hz) in (1..).zip(chain.resonances_hz(&Place::centre())) {
@@ -205,6 +214,7 @@ fn set_platform(
     let beside = payload_kg * (x_m * x_m + y_m * y_m);
     bench.set(&[
         (id::RING_INERTIA, chain.motor_inertia + chain.ring_inertia),
+        (id::MOTORS_INERTIA, chain.motor_inertia),
         (id::PLATFORM_MASS, mass_kg - payload_kg),
         (id::PLATFORM_INERTIA, chain.load.inertia - beside),
         (id::PAYLOAD_MASS, payload_kg),

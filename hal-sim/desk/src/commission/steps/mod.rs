@@ -4,6 +4,7 @@ mod ends;
 mod forces;
 mod friction;
 mod gains;
+mod gears;
 mod guides;
 mod hand;
 mod hunting;
@@ -102,6 +103,11 @@ pub static STEPS: &[Step] = &[
         name: "limits",
         about: "limits of motion: those of a controller that knows nothing, or what motors and supply bear with this load where that is less",
         run: limits::run,
+    },
+    Step {
+        name: "gears",
+        about: "turning once more, and faster: how unevenly each gear turns; made up for from here on",
+        run: gears::run,
     },
     Step {
         name: "verification",

@@ -1,0 +1,261 @@
+//! Turning without end once more, and faster: how unevenly each gear turns. Made up for from here on, where the pivots follow no worse for it.
+
+use crate::commission::bench::{Bench, PEAK};
+use crate::commission::found::{CommissionError, Finding, Found, fail};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
+use crate::record::RecordError;
+use commissioning::chain::{Load, Place};
+use commissioning::gear::{self, Gear, GearError, Turning, gear, once_a_turn};
+use commissioning::{Signals, Timing};
+use nalgebra::{Complex, Matrix3, Vector3};
+use std::f64::consts::TAU;
+
+/// Rates, as shares of the largest that a pivot and the platform may have, and how long each is kept before it is measured, s.
+const RATES: [f64; 4] = [0.7, 0.35, -0.35, -0.7];
+const REACHED_S: f64 = 0.7;
+/// Rows of a record, which is of a quarter turn of the platform.
+const ROWS: usize = 2_000;
+const TURN_RAD: f64 = 0.25 * TAU;
+/// An error that is not so many of its standard deviations is none that is known.
+const LEAST_SURE: f64 = 5.0;
+/// Seconds over which that is looked at.
+const LOOK_S: f64 = 1.0;
+
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    known: &mut Known,
+    found: &mut Found,
+) -> Result<(), CommissionError> {
+    let mut drives = Vec::new();
+    for pivot in 0..AXES {
+        drives.push(drive(bench, known, pivot)?);
+    }
+    let gears = Gears {
+        inertia: inertia(bench)?,
+        drives,
+    };
+    let rotation_rad_s = bench.parameter(id::ROTATION_SPEED)?.to_radians();
+    let most_rad_s = f64::min(bench.parameter(id::PIVOT_RATE)?, rotation_rad_s);
+    let rates = RATES.map(|share| share * most_rad_s);
+    let before = set_aside(bench)?;
+    bench.reserve(ROWS)?;
+    let roughly = gears.find(bench, &rates)?;
+    let is_sure = |gear: &&Gear| gear.amplitude_rad > LEAST_SURE * gear.deviation_rad;
+    if roughly.iter().filter(is_sure).count() < AXES {
+        tell(found, &roughly, &roughly);
+        still(bench)?;
+        return Ok(bench.set(&before)?);
+    }
+    // Once more with that in force: rings that move less beside the steady motion have less of carriages that do not slide in it.
+    let without_rad = followed(bench)?;
+    still(bench)?;
+    bench.set(&values(&roughly))?;
+    let gently = gears.find(bench, &[rates[0], rates[3]])?;
+    still(bench)?;
+    tell(found, &gently, &roughly);
+    bench.set(&values(&gently))?;
+    bench.turn(rates[3])?;
+    let with_rad = followed(bench)?;
+    still(bench)?;
+    if !is_better(found, with_rad, without_rad) {
+        bench.set(&before)?;
+    }
+    Ok(())
+}
+
+/// What is known of drives, rings and platform.
+struct Gears {
+    drives: Vec<gear::Known>,
+    inertia: Matrix3<f64>,
+}
+
+impl Gears {
+    /// Of the three pivots, from these rates. The platform turns on at the last of them.
+    fn find(&self, bench: &mut Bench<'_>, rates: &[f64]) -> Result<Vec<Gear>, CommissionError> {
+        let mut turnings: [Vec<Turning>; AXES] = Default::default();
+        for &rate in rates {
+            bench.turn(rate)?;
+            bench.delay(REACHED_S)?;
+            let mut beside = Vec::new();
+            for (pivot, drive) in self.drives.iter().enumerate() {
+                beside.push(turned(bench, pivot, rate, drive.ratio)?);
+            }
+            for (pivot, turnings) in turnings.iter_mut().enumerate() {
+                let Beside {
+                    rate_rad_s,
+                    current_a,
+                    ..
+                } = beside[pivot];
+                let moved = moved(pivot, &beside, &self.inertia, self.drives[pivot].ratio);
+                turnings.push(Turning {
+                    rate_rad_s,
+                    current_a,
+                    moved,
+                });
+            }
+        }
+        (turnings.iter().zip(&self.drives))
+            .map(|(turnings, drive)| gear(turnings, drive).or_else(no_gear))
+            .collect()
+    }
+}
+
+fn drive(bench: &mut Bench<'_>, known: &Known, pivot: usize) -> Result<gear::Known, RecordError> {
+    let mut value = |first: u32| bench.parameter(id::of(first, pivot));
+    Ok(gear::Known {
+        ratio: value(id::GEAR_RATIO)?,
+        motor_constant: known.motor_constants[pivot],
+        motor_inertia_kg_m2: value(id::MOTOR_INERTIA)?,
+    })
+}
+
+fn no_gear<T>(error: GearError) -> Result<T, CommissionError> {
+    fail(error.to_string(), "look whether the platform turns evenly")
+}
+
+/// What was made up for before, which is not to be in what is measured.
+fn set_aside(bench: &mut Bench<'_>) -> Result<Vec<(u32, f64)>, RecordError> {
+    let mut before = Vec::new();
+    for pivot in 0..AXES {
+        for first in [id::GEAR_ERROR, id::GEAR_PHASE] {
+            let id = id::of(first, pivot);
+            before.push((id, bench.parameter(id)?));
+        }
+        bench.set(&[(id::of(id::GEAR_ERROR, pivot), 0.0)])?;
+    }
+    Ok(before)
+}
+
+/// What varies once a turn of a pivot's motor.
+#[derive(Clone, Copy)]
+struct Beside {
+    rate_rad_s: f64,
+    current_a: Complex<f64>,
+    angle_rad: Complex<f64>,
+}
+
+/// A quarter turn of the platform at a rate.
+fn turned(
+    bench: &mut Bench<'_>,
+    pivot: usize,
+    rate: f64,
+    ratio: f64,
+) -> Result<Beside, CommissionError> {
+    let ticks = TURN_RAD / rate.abs() / bench.period_s;
+    let every = (ticks / ROWS as f64).round().max(1.0) as usize;
+    let Signals {
+        current_a,
+        angle_rad,
+        ..
+    } = bench.record(pivot, ROWS, every, None)?.signals;
+    let seconds = (ROWS - 1) as f64 * every as f64 * bench.period_s;
+    let rate_rad_s = (angle_rad[ROWS - 1] - angle_rad[0]) / seconds;
+    let once = |values: &[f64]| once_a_turn(values, &angle_rad, ratio).or_else(no_gear);
+    let Timing {
+        angle_s, current_s, ..
+    } = Timing::STAGE;
+    Ok(Beside {
+        rate_rad_s,
+        // To when the angle was latched.
+        current_a: once(&current_a)? * Complex::cis(-ratio * rate_rad_s * (current_s - angle_s)),
+        angle_rad: once(&angle_rad)?,
+    })
+}
+
+/// Of rings with their drives and the platform with its load in the middle, as the controller has been told.
+fn inertia(bench: &mut Bench<'_>) -> Result<Matrix3<f64>, RecordError> {
+    let mut rings = Vector3::zeros();
+    for pivot in 0..AXES {
+        rings[pivot] = bench.parameter(id::of(id::INERTIA, pivot))?;
+    }
+    let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
+    let payload_kg = bench.parameter(id::PAYLOAD_MASS)?;
+    let (x_m, y_m) = (
+        1e-3 * bench.parameter(id::PAYLOAD_X)?,
+        1e-3 * bench.parameter(id::PAYLOAD_Y)?,
+    );
+    let load = Load {
+        mass: (bench.parameter(id::PLATFORM_MASS)? + payload_kg) * radius_m * radius_m,
+        inertia: bench.parameter(id::PLATFORM_INERTIA)?
+            + bench.parameter(id::PAYLOAD_INERTIA)?
+            + payload_kg * (x_m * x_m + y_m * y_m),
+        moment: [x_m, y_m].map(|place_m| payload_kg * place_m * radius_m),
+    };
+    Ok(Matrix3::from_diagonal(&rings) + load.at_rings(&Place::centre()))
+}
+
+/// What the motion of all rings beside a steady one asks for at one of them. Each is known over its own angle, and they are a third of a turn apart.
+fn moved(pivot: usize, beside: &[Beside], inertia: &Matrix3<f64>, ratio: f64) -> Complex<f64> {
+    (beside.iter().enumerate())
+        .map(|(other, one)| {
+            let apart = (other as f64 - pivot as f64) * TAU / AXES as f64;
+            one.angle_rad * Complex::cis(ratio * apart) * inertia[(pivot, other)]
+        })
+        .sum()
+}
+
+/// The parameters that make up for gears.
+fn values(gears: &[Gear]) -> Vec<(u32, f64)> {
+    let of_gear = |(pivot, gear): (usize, &Gear)| {
+        [
+            (id::of(id::GEAR_ERROR, pivot), 1e6 * gear.amplitude_rad),
+            (id::of(id::GEAR_PHASE, pivot), gear.phase_rad.to_degrees()),
+        ]
+    };
+    gears.iter().enumerate().flat_map(of_gear).collect()
+}
+
+/// What is told of gears, as far as they were known at first.
+fn tell(found: &mut Found, gears: &[Gear], at_first: &[Gear]) {
+    for (number, (gear, at_first)) in (1..).zip(gears.iter().zip(at_first)) {
+        let amplitude_urad = 1e6 * gear.amplitude_rad;
+        found.number(format!("gear of pivot {number}"), amplitude_urad, "urad");
+        found.push(Finding::told(
+            format!("gear of pivot {number}, once a turn of its motor"),
+            format!(
+                "{amplitude_urad:.0} urad, +-{:.1}, at {:.0} deg",
+                1e6 * at_first.deviation_rad,
+                gear.phase_rad.to_degrees()
+            ),
+        ));
+    }
+}
+
+/// Whether the pivots follow no worse with gears made up for.
+fn is_better(found: &mut Found, with_rad: f64, without_rad: f64) -> bool {
+    let (with_urad, without_urad) = (1e6 * with_rad, 1e6 * without_rad);
+    let is_better = with_urad <= without_urad;
+    found.number("following error, gears made up for", with_urad, "urad");
+    found.number(
+        "following error, gears not made up for",
+        without_urad,
+        "urad",
+    );
+    let not_kept = if is_better {
+        ""
+    } else {
+        "tried, and not kept: "
+    };
+    found.push(Finding::told(
+        format!("{not_kept}largest following error of the turning pivots with that made up for"),
+        format!("{with_urad:.0} urad, {without_urad:.0} without"),
+    ));
+    is_better
+}
+
+/// The largest following error of a pivot while the platform turns, rad.
+fn followed(bench: &mut Bench<'_>) -> Result<f64, RecordError> {
+    bench.delay(REACHED_S)?;
+    bench.number("LST?", PEAK)?;
+    bench.delay(LOOK_S)?;
+    bench.number("LST?", PEAK)
+}
+
+fn still(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    bench.ask("HLT")?;
+    bench.settle()?;
+    bench.ask("MOV W 0")?;
+    bench.wait_for_target(60.0)
+}
