@@ -45,7 +45,7 @@ fn set(bench: &mut Bench<'_>, share: f64) -> Result<(), CommissionError> {
 
 /// Encoder counts within which a loop counts as settled that is as slow as with the first share, and those of the machine.
 const WIDE_COUNTS: f64 = 100.0;
-const USUAL_COUNTS: f64 = 2.0;
+pub(super) const USUAL_COUNTS: f64 = 2.0;
 
 /// The same for gains that were found.
 pub(in crate::commission) fn rest_for(
