@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// Longest time for a motion of the plan, by the controller's clock.
 const LONGEST_MOTION_S: f64 = 20.0;
+/// How long one on an emulated chip may be silent: a second of it may take many of this machine, the more so where that is busy.
+const EMULATED_PATIENCE: Duration = Duration::from_secs(60);
 
 /// A controller that is tested.
 pub(super) struct Controller {
@@ -19,7 +21,10 @@ pub(super) struct Controller {
 
 impl Controller {
     pub fn open(endpoint: &Endpoint, is_emulated: bool) -> Result<Self, RecordError> {
-        let desk = Desk::open(endpoint)?;
+        let mut desk = Desk::open(endpoint)?;
+        if is_emulated {
+            desk.set_patience(EMULATED_PATIENCE);
+        }
         Ok(Self { desk, is_emulated })
     }
 
