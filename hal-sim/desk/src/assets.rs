@@ -31,6 +31,7 @@ const ASSETS: &[Asset] = &[
     asset!("/js/sequence.js", SCRIPT, "js/sequence.js"),
     asset!("/js/commissioning.js", SCRIPT, "js/commissioning.js"),
     asset!("/js/calibration.js", SCRIPT, "js/calibration.js"),
+    asset!("/js/orders.js", SCRIPT, "js/orders.js"),
     asset!("/js/steps.js", SCRIPT, "js/steps.js"),
     asset!("/js/task-picture.js", SCRIPT, "js/task-picture.js"),
     asset!("/js/tuning.js", SCRIPT, "js/tuning.js"),

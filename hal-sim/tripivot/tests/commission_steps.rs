@@ -1,6 +1,6 @@
 //! Single steps of commissioning, on machines whose controllers have been told of them.
 
-use desk::commission::{Chosen, GainsError, Machine, PutError, run};
+use desk::commission::{Chosen, Finding, GainsError, Machine, PutError, run};
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
@@ -19,6 +19,39 @@ fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
     let failure = ran.done[0].failure.as_ref().expect("a failure");
     println!("{failure:?}");
     assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
+}
+
+/// The settling window, encoder counts, that verification leaves a machine whose servos have this integral gain; as told, where it is none.
+fn window_left(integral: Option<f64>) -> Result<f64, String> {
+    let stage = StageParameters::REFERENCE;
+    let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory(), Told::Machine);
+    machine.ask("CCL 1 ADVANCED").expect("it is taken");
+    if let Some(integral) = integral {
+        let line = format!("SPA 1 0x54500302 {integral} 1 0x54500400 100");
+        machine.ask(&line).expect("it is taken");
+    }
+    let chosen = Chosen::only("verification").expect("a step");
+    let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
+    let findings = &ran.done[0].found.findings;
+    let widened = |finding: &&Finding| finding.name.contains("window is widened");
+    let widened = findings.iter().filter(widened).count() as i32;
+    if let Some(failure) = &ran.done[0].failure {
+        return Err(failure.what.clone());
+    }
+    let answer = machine.ask("SPA? 1 0x54500400").expect("it answers");
+    let text = answer.expect("a value");
+    let window = text.rsplit('=').next().and_then(|text| text.parse().ok());
+    // Each time that it is widened is told.
+    assert_eq!(window, Some(2.0 * 2.0_f64.powi(widened)));
+    Ok(window.expect("a number"))
+}
+
+#[test]
+fn a_stage_that_friction_holds_off_gets_a_wider_settling_window_and_not_any() {
+    assert_eq!(window_left(None), Ok(2.0));
+    assert_eq!(window_left(Some(200.0)), Ok(4.0));
+    let refused = window_left(Some(0.0)).expect_err("further off than any window");
+    assert!(refused.contains("has not come to its end"), "{refused}");
 }
 
 /// The worst of what gains that are in force make of the plants that were measured with them, beside the loops as measured, and a tenth more.

@@ -1,6 +1,7 @@
 // Calibration from this page: where to measure, how far it is, what the fit leaves, and what fresh poses say of it.
 
-import { byId, make, report, setText } from "./dom.js";
+import { byId, make, setText } from "./dom.js";
+import { Orders } from "./orders.js";
 import { StepList, fileLink } from "./steps.js";
 
 /** Instruments, and how well they usually measure a length, nm. */
@@ -29,21 +30,21 @@ function left(seconds) {
 }
 
 export class Calibration {
-  #status = null;
+  #isPaused = false;
   #steps = new StepList(byId("calibrate-steps"));
   /** When the first of these visits was told, and which that was. */
   #begun = null;
 
   constructor(operator, firstMove) {
-    Object.assign(this, { operator, firstMove });
     for (const name of ["kit", "noise", "turn", "poses", "fresh", "reads", "plan", "measure", "pause", "resume", "end", "apply", "verify", "undo", "bar", "far", "ask", "where", "fields", "reading", "read", "wrong", "said", "files"]) {
       this[name] = byId(`calibrate-${name}`);
     }
+    this.orders = new Orders("calibration", operator, firstMove, this.said);
     this.kit.addEventListener("change", () => { this.noise.value = KITS[this.kit.value]?.[1] ?? 50; });
     for (const order of ["plan", "measure"]) this[order].addEventListener("click", () => this.#give(order, () => this.#wish(this.poses)));
     this.verify.addEventListener("click", () => this.#give("verify", () => this.#wish(this.fresh)));
     for (const order of ["resume", "apply", "undo", "end"]) this[order].addEventListener("click", () => this.#give(order));
-    this.pause.addEventListener("click", () => this.#give(this.#status?.is_paused ? "continue" : "pause"));
+    this.pause.addEventListener("click", () => this.#give(this.#isPaused ? "continue" : "pause"));
     this.ask.addEventListener("submit", (event) => {
       event.preventDefault();
       const text = this.reading.value;
@@ -63,23 +64,12 @@ export class Calibration {
     };
   }
 
-  async #give(order, with_ = null) {
-    const taken = await report(this.said, async () => {
-      const wanted = with_ ? { [order]: with_() } : order;
-      if (MOVING.includes(order)) await this.firstMove.agree();
-      await this.operator.order({ calibration: wanted });
-    });
-    if (taken) this.#say(this.#status);
-  }
-
-  #say(status) {
-    if (!status?.what) return;
-    this.said.className = `said ${status.good ? "good" : "bad"}`;
-    setText(this.said, status.runs ? `${status.what}…` : `${status.what}: ${status.said}`);
+  #give(order, wish = null) {
+    this.orders.give(() => (wish ? { [order]: wish() } : order), MOVING.includes(order));
   }
 
   #show(status) {
-    this.#status = status;
+    this.#isPaused = status.is_paused;
     const { kits, reads, runs, is_paused: isPaused, may_resume: mayResume, may_apply: mayApply } = status;
     if (this.kit.childElementCount !== kits.length) {
       this.kit.replaceChildren(...kits.map((kit) => make("option", { value: kit, textContent: `${kit} – ${KITS[kit]?.[0] ?? ""}` })));
@@ -93,7 +83,7 @@ export class Calibration {
     setText(this.pause, isPaused ? "Continue" : "Pause");
     this.#far(status);
     this.#ask(status.asks);
-    this.#say(status);
+    this.orders.say(status);
     this.#steps.show(status.steps);
     this.#files(status);
   }

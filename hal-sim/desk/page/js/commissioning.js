@@ -1,6 +1,7 @@
 // Commissioning from this page: which step is under way, what each has found, and what the person beside the machine is asked for.
 
-import { byId, make, report, setText } from "./dom.js";
+import { byId, make, setText } from "./dom.js";
+import { Orders } from "./orders.js";
 import { StepList, fileLink } from "./steps.js";
 import { TaskPicture } from "./task-picture.js";
 
@@ -11,18 +12,17 @@ const WAITS = {
 const SIMULATED = "The simulated machine’s simulated person does it.";
 
 export class Commissioning {
-  #status = null;
   #steps = new StepList(byId("commission-steps"));
   #picture = new TaskPicture(byId("commission-picture"));
 
   constructor(operator, firstMove) {
-    Object.assign(this, { operator, firstMove });
     for (const name of ["start", "from", "periods", "only", "tune", "undo", "end", "task", "words", "waits", "done", "said", "files"]) this[name] = byId(`commission-${name}`);
+    this.orders = new Orders("commissioning", operator, firstMove, this.said);
     this.withoutJig = byId("commission-without-jig");
     const from = () => (this.from.selectedIndex > 0 ? this.from.value : null);
-    this.start.addEventListener("click", () => this.#give(() => ({ commission: { from: from(), scale_periods: this.#periods(), without_jig: this.withoutJig.checked } })));
-    this.only.addEventListener("click", () => this.#give(() => ({ only: { step: this.from.value, scale_periods: this.#periods() } })));
-    for (const order of ["tune", "undo", "end", "done"]) this[order].addEventListener("click", () => this.#give(() => order));
+    this.start.addEventListener("click", () => this.orders.give(() => ({ commission: { from: from(), scale_periods: this.#periods(), without_jig: this.withoutJig.checked } }), true));
+    this.only.addEventListener("click", () => this.orders.give(() => ({ only: { step: this.from.value, scale_periods: this.#periods() } }), true));
+    for (const order of ["tune", "undo", "end", "done"]) this[order].addEventListener("click", () => this.orders.give(() => order, order === "tune" || order === "undo"));
     byId("commission-open").addEventListener("click", () => {
       byId("commissioning").open = true;
       byId("commissioning").scrollIntoView();
@@ -37,23 +37,7 @@ export class Commissioning {
     return text ? Number(text) : null;
   }
 
-  async #give(order) {
-    const taken = await report(this.said, async () => {
-      const wanted = order();
-      if (wanted !== "end" && wanted !== "done") await this.firstMove.agree();
-      await this.operator.order({ commissioning: wanted });
-    });
-    if (taken) this.#say(this.#status);
-  }
-
-  #say(status) {
-    if (!status?.what) return;
-    this.said.className = `said ${status.good ? "good" : "bad"}`;
-    setText(this.said, status.runs ? `${status.what}…` : `${status.what}: ${status.said}`);
-  }
-
   #show(status) {
-    this.#status = status;
     const { runs, asks, before, all_steps: names } = status;
     if (this.from.childElementCount !== names.length) {
       this.from.replaceChildren(...names.map((name) => make("option", { textContent: name })));
@@ -68,7 +52,7 @@ export class Commissioning {
       setText(this.waits, asks.is_simulated ? SIMULATED : WAITS[asks.task]);
       this.done.hidden = !asks.waits;
     }
-    this.#say(status);
+    this.orders.say(status);
     this.#steps.show(status.steps);
     this.#files(status);
   }

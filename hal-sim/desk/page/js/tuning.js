@@ -1,7 +1,8 @@
 // Gains by hand: the loops as measured, what other gains would make of them, and those put in force.
 
 import { figure } from "./steps.js";
-import { byId, make, report, setText } from "./dom.js";
+import { byId, make } from "./dom.js";
+import { Orders } from "./orders.js";
 
 /** Rows of the gains, as the server has them for each pivot. */
 const GAINS = [
@@ -22,25 +23,17 @@ export class Tuning {
   #measured = "";
 
   constructor(operator, firstMove) {
-    Object.assign(this, { operator, firstMove });
     for (const name of ["measure", "predict", "put", "keep", "back", "said", "worth", "gains", "plots"]) this[name] = byId(`tuning-${name}`);
-    this.measure.addEventListener("click", () => this.#give(() => "measure", true));
-    this.predict.addEventListener("click", () => this.#give(() => ({ predict: { gains: this.#typed() } }), false));
-    this.put.addEventListener("click", () => this.#give(() => ({ put: { gains: this.#typed() } }), true));
-    this.keep.addEventListener("click", () => this.#give(() => "keep", false));
+    this.orders = new Orders("commissioning", operator, firstMove, this.said);
+    this.measure.addEventListener("click", () => this.orders.give(() => "measure", true));
+    this.predict.addEventListener("click", () => this.orders.give(() => ({ predict: { gains: this.#typed() } }), false));
+    this.put.addEventListener("click", () => this.orders.give(() => ({ put: { gains: this.#typed() } }), true));
+    this.keep.addEventListener("click", () => this.orders.give(() => "keep", false));
     this.back.addEventListener("click", () => this.#fill(this.#tuning.gains));
     this.#fields = GAINS.map((name) => PIVOTS.map((pivot) => make("input", { inputMode: "decimal", autocomplete: "off", disabled: true, "aria-label": `${name}, pivot ${pivot + 1}` })));
     const rows = GAINS.map((name, row) => make("tr", {}, make("th", { scope: "row", textContent: name }), ...this.#fields[row].map((field) => make("td", {}, field))));
     this.gains.replaceChildren(heads(["gains and filters", ...PIVOTS.map((pivot) => `pivot ${pivot + 1}`)]), ...rows);
     operator.addEventListener("commissioning", ({ detail }) => this.#show(detail));
-  }
-
-  async #give(order, moves) {
-    await report(this.said, async () => {
-      const wanted = order();
-      if (moves) await this.firstMove.agree();
-      await this.operator.order({ commissioning: wanted });
-    });
   }
 
   /** Numbers of each pivot. */
@@ -62,14 +55,11 @@ export class Tuning {
   }
 
   #show(status) {
-    const { runs, what, said, good, tuning } = status;
+    const { runs, tuning } = status;
     this.measure.disabled = runs;
     this.keep.disabled = runs;
     for (const button of [this.predict, this.put, this.back]) button.disabled = runs || !tuning;
-    if (what) {
-      this.said.className = `said ${good ? "good" : "bad"}`;
-      setText(this.said, runs ? `${what}…` : `${what}: ${said}`);
-    }
+    this.orders.say(status);
     this.#tuning = tuning;
     if (!tuning) return;
     for (const field of this.#fields.flat()) field.disabled = false;

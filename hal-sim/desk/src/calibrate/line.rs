@@ -1,7 +1,6 @@
 //! What is told of a plan, a fit or a verification, line by line.
 
-/// Track radii in nm.
-pub(super) const NM_PER_MM: f64 = 1e6;
+const NM_PER_MM: f64 = 1e6;
 pub(super) const URAD_PER_RAD: f64 = 1e6;
 
 /// A line of it.
@@ -17,11 +16,11 @@ pub struct Line {
 
 impl Line {
     /// What is not judged.
-    pub(super) fn new(what: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn new(what: impl Into<String>, text: impl Into<String>) -> Self {
         Self::judged(what, text, true)
     }
 
-    pub(super) fn judged(what: impl Into<String>, text: impl Into<String>, is_good: bool) -> Self {
+    pub(crate) fn judged(what: impl Into<String>, text: impl Into<String>, is_good: bool) -> Self {
         Self {
             what: what.into(),
             text: text.into(),
@@ -31,6 +30,7 @@ impl Line {
 }
 
 /// A length in track radii in nm.
-pub(super) fn nm(length: f64) -> f64 {
+#[must_use]
+pub fn nm(length: f64) -> f64 {
     length * kinematics::Geometry::REFERENCE.radius_mm * NM_PER_MM
 }

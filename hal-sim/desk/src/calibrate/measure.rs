@@ -8,8 +8,9 @@ use calibration::contact::{Pressed, approach as approach_end, contact};
 use calibration::plan::{At, Stop};
 use calibration::{Seen, Visit};
 
-use super::guide_give::GuideGive;
-use crate::commission::{Before, Bench, CommissionError, Machine, Touch};
+use crate::commission::{
+    Aside, Bench, CommissionError, EXCITATION_LIMITS, GUIDE_STIFFNESS, Machine, Touch,
+};
 use crate::record::RecordError;
 
 /// Rows between two visits of the reference pose.
@@ -161,7 +162,8 @@ pub fn measure(
             fault => MeasureError::Stage(format!("the stage does not hold{fault}")),
         });
     }
-    let give = GuideGive::set_aside(&mut stage.bench)?;
+    // Made up for, how guides give way is in what the encoders read, and in no pose: a fit would take it for scatter.
+    let give = Aside::set(&mut stage.bench, &[(GUIDE_STIFFNESS, 0.0)])?;
     let visited = visits_or_touches(&mut stage, reader, way, keep);
     let given_back = give.give_back(&mut stage.bench);
     visited.and(given_back.map_err(MeasureError::from))
@@ -192,11 +194,11 @@ fn visits_or_touches(
 }
 
 /// Limits of excitations as rings need them that go against ends. The servo is off then, and on again with the first visit.
-fn widened(bench: &mut Bench<'_>) -> Result<Before, MeasureError> {
+fn widened(bench: &mut Bench<'_>) -> Result<Aside, MeasureError> {
     bench.ask("CCL 1 ADVANCED")?;
     bench.ask("SVO X 0")?;
     bench.delay(LET_GO_S)?;
-    let before = Before::widen(bench)?;
+    let before = Aside::set(bench, &EXCITATION_LIMITS)?;
     bench.hold()?;
     Ok(before)
 }

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | `planned` | where to measure, and what will come of it, in words |
 //! | `measure` | a plan is driven, and an instrument read at each of its poses |
-//! | `guide_give` | what is not made up for meanwhile |
 //! | `fitted` | a calibration from what was measured |
 //! | `reading` | numbers to and from whoever reads an instrument |
 //! | [`rows`] | a measurement as the text that is kept of it |
@@ -15,7 +14,6 @@
 
 mod apply;
 mod fitted;
-mod guide_give;
 mod line;
 mod measure;
 mod planned;
@@ -27,9 +25,9 @@ mod verify;
 
 pub use apply::{ApplyError, Evidence, apply, lines, switch_off};
 pub use fitted::{FitTold, Fitted, FittedError, Moved};
-pub use line::Line;
+pub use line::{Line, nm};
 pub use measure::{MeasureError, Measured, Reader, Wanted, Way, measure, serial, with_references};
-pub use planned::{PlanTold, noise};
+pub use planned::{NOISES, POSES, PlanTold, noise};
 pub use reading::{fields, question, reading};
 pub use told::{Kind, Told};
 pub use verify::{Verdict, Verified, VerifyError, verify};

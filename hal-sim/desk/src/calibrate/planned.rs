@@ -1,11 +1,17 @@
 //! A plan in words and numbers.
 
+use core::ops::RangeInclusive;
+
 use calibration::{Instrument, Noise, Plan};
 use kinematics::Geometry;
 use serde::Serialize;
 
 use super::line::{Line, URAD_PER_RAD, nm};
 
+/// Poses that a plan may have.
+pub const POSES: RangeInclusive<usize> = 12..=3000;
+/// Noise that an instrument may have, m and rad: from an atom to 1 mm, or from 0.1 nrad to 1 mrad.
+pub const NOISES: RangeInclusive<f64> = 1e-10..=1e-3;
 /// Length over which theta is measured, m, unless its noise is told: two beams of an interferometer.
 const BASE_M: f64 = 0.05;
 

@@ -11,7 +11,7 @@ use firmware::control::servo::BorneLimits;
 use firmware::gcs::{ErrorCode, PARAMETERS};
 use firmware::parameters::Parameters;
 
-type Answered<T> = Result<T, RecordError>;
+pub(super) type Answered<T> = Result<T, RecordError>;
 type Result<T, E = CommissionError> = std::result::Result<T, E>;
 
 /// Rows that are fetched at a time.

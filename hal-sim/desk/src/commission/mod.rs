@@ -17,10 +17,12 @@
 //! | `sines` | multisines on one motor after the other |
 //! | `touch` | a ring moved alone until a guide is at its end |
 //! | `steps/` | a file each |
+//! | `aside` | parameters that are others for a time |
 //! | `results` | all of it, as numbers, and what has changed since the last time |
 //! | `report` | all of it, as one page |
 //! | `backup` | what a controller was told before, and giving that back |
 
+mod aside;
 mod backup;
 mod bench;
 mod by_hand;
@@ -48,11 +50,12 @@ pub use steps::STEPS;
 use crate::line::Endpoint;
 use crate::record::{Desk, RecordError};
 use crate::settings::bring_back;
+pub(crate) use aside::Aside;
 pub(crate) use bench::Bench;
 pub(crate) use id::GUIDE_STIFFNESS;
 use known::Known;
 use std::time::Duration;
-pub(crate) use touch::{Before, Touch};
+pub(crate) use touch::{LIMITS as EXCITATION_LIMITS, Touch};
 
 /// A machine with its controller, and somebody beside it.
 pub trait Machine {

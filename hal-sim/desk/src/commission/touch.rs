@@ -10,7 +10,7 @@ type Result<T> = std::result::Result<T, CommissionError>;
 
 /// While rings are moved so far: largest voltage, V, how far they may be off the servos' setpoints, rad, and how fast they may be, rad/s. The
 /// setpoint begins at once, and a ring overshoots its rate until it follows.
-const LIMITS: [(u32, f64); 3] = [
+pub(crate) const LIMITS: [(u32, f64); 3] = [
     (id::EXCITATION_V, 5.0),
     (id::EXCITATION_WAY, 0.3),
     (id::EXCITATION_RATE, 1.2),
@@ -36,40 +36,6 @@ const ROWS: usize = 700;
 const EVERY: usize = 40;
 /// Time in which a ring comes to where its setpoint is already, ms.
 const FOLLOW_MS: f64 = 400.0;
-
-/// The limits of excitations as they were before.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Before([(u32, f64); 3]);
-
-impl Before {
-    /// Sets those that rings need here; not with the servo on.
-    pub fn widen(bench: &mut Bench<'_>) -> Result<Self> {
-        let mut before = read(bench)?;
-        if before == LIMITS {
-            // Somebody was cut off who had widened them.
-            for (id, _) in LIMITS {
-                bench.recall(id)?;
-            }
-            before = read(bench)?;
-        }
-        bench.set(&LIMITS)?;
-        Ok(Self(before))
-    }
-
-    /// Gives them back.
-    pub fn give_back(self, bench: &mut Bench<'_>) -> Result<()> {
-        Ok(bench.set(&self.0)?)
-    }
-}
-
-/// Limits of excitations in force.
-fn read(bench: &mut Bench<'_>) -> Result<[(u32, f64); 3]> {
-    let mut limits = LIMITS;
-    for (id, value) in &mut limits {
-        *value = bench.parameter(*id)?;
-    }
-    Ok(limits)
-}
 
 /// Which ring is moved, and which way.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,12 @@
 //! Zeros without a jig: each ring is moved alone, both ways, until a guide is at its end; once from where the platform is, once from the middle.
 
 use super::zeros;
+use crate::commission::aside::Aside;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
-use crate::commission::touch::{Before, Touch};
+use crate::commission::touch::{LIMITS, Touch};
 use calibration::GUIDE_ENDS;
 use commissioning::guide_ends;
 use commissioning::guide_ends::GuideEnds;
@@ -23,7 +24,7 @@ const MOST_DEVIATION_RAD: f64 = 10e-3;
 const ADVICE: &str = "a ring was stopped by something else than the end of a guide: see that nothing is in the way; or use the jig (step `zeros`)";
 
 pub(super) fn run(bench: &mut Bench<'_>, known: &mut Known, found: &mut Found) -> Result<()> {
-    let before = Before::widen(bench)?;
+    let before = Aside::set(bench, &LIMITS)?;
     let mut contacts = round(bench)?;
     let roughly = zeros_of(&contacts)?;
     // Zeros that may be wrong drive nothing.

@@ -20,7 +20,7 @@ const ROWS: usize = 2_000;
 const TURN_RAD: f64 = 0.25 * TAU;
 /// An error that is not so many of its standard deviations is none that is known.
 const LEAST_SURE: f64 = 5.0;
-/// Seconds over which that is looked at.
+/// Over which a following error is looked at, s.
 const LOOK_S: f64 = 1.0;
 
 pub(super) fn run(
@@ -42,8 +42,9 @@ pub(super) fn run(
     let before = set_aside(bench)?;
     bench.reserve(ROWS)?;
     let roughly = gears.find(bench, &rates)?;
-    let is_sure = |gear: &&Gear| gear.amplitude_rad > LEAST_SURE * gear.deviation_rad;
-    if roughly.iter().filter(is_sure).count() < AXES {
+    let is_sure = |gear: &Gear| gear.amplitude_rad > LEAST_SURE * gear.deviation_rad;
+    let sure: Vec<bool> = roughly.iter().map(is_sure).collect();
+    if !sure.contains(&true) {
         tell(found, &roughly, &roughly);
         still(bench)?;
         return Ok(bench.set(&before)?);
@@ -51,11 +52,11 @@ pub(super) fn run(
     // Once more with that in force: rings that move less beside the steady motion have less of carriages that do not slide in it.
     let without_rad = followed(bench)?;
     still(bench)?;
-    bench.set(&values(&roughly))?;
+    bench.set(&values(&roughly, &sure))?;
     let gently = gears.find(bench, &[rates[0], rates[3]])?;
     still(bench)?;
     tell(found, &gently, &roughly);
-    bench.set(&values(&gently))?;
+    bench.set(&values(&gently, &sure))?;
     bench.turn(rates[3])?;
     let with_rad = followed(bench)?;
     still(bench)?;
@@ -196,15 +197,16 @@ fn moved(pivot: usize, beside: &[Beside], inertia: &Matrix3<f64>, ratio: f64) ->
         .sum()
 }
 
-/// The parameters that make up for gears.
-fn values(gears: &[Gear]) -> Vec<(u32, f64)> {
+/// The parameters that make up for those gears whose error is known.
+fn values(gears: &[Gear], sure: &[bool]) -> Vec<(u32, f64)> {
     let of_gear = |(pivot, gear): (usize, &Gear)| {
         [
             (id::of(id::GEAR_ERROR, pivot), 1e6 * gear.amplitude_rad),
             (id::of(id::GEAR_PHASE, pivot), gear.phase_rad.to_degrees()),
         ]
     };
-    gears.iter().enumerate().flat_map(of_gear).collect()
+    let known = gears.iter().enumerate().filter(|(pivot, _)| sure[*pivot]);
+    known.flat_map(of_gear).collect()
 }
 
 /// What is told of gears, as far as they were known at first.

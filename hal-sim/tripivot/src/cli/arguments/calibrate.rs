@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use calibration::Kit;
 use clap::{Args, Subcommand};
+use desk::calibrate::{NOISES, POSES};
 
 use super::super::number::{whole, within};
 use super::super::stage::Machine;
@@ -63,7 +64,7 @@ pub(in super::super) struct CalibrateMeasure {
     #[command(flatten)]
     pub(in super::super) noise: NoiseArguments,
     /// How many poses; the first is visited again after every twenty, to see what drifts.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(POSES))]
     pub(in super::super) poses: usize,
     /// Command that reads the instrument: it is run in a shell for each pose, gets x_mm y_mm theta_deg on standard input (for cameras
     /// mark_x_mm mark_y_mm camera_x_mm camera_y_mm besides, for balls the ball's place and the gauges') and answers x_mm y_mm theta_deg, or x_mm
@@ -109,7 +110,7 @@ pub(in super::super) struct CalibrateVerify {
     #[arg(long, value_name = "ANGLE", value_parser = angle_rad)]
     pub(in super::super) noise_theta: Option<f64>,
     /// How many fresh poses; each is gone to twice.
-    #[arg(long, value_name = "N", default_value_t = 60, allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    #[arg(long, value_name = "N", default_value_t = 60, allow_negative_numbers = true, value_parser = whole(POSES))]
     pub(in super::super) poses: usize,
     /// Command that reads the instrument, as for `tripivot calibrate measure`.
     #[arg(long, value_name = "COMMAND")]
@@ -178,7 +179,7 @@ pub(in super::super) struct CalibratePlan {
     #[command(flatten)]
     pub(in super::super) noise: NoiseArguments,
     /// How many poses.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(POSES))]
     pub(in super::super) poses: usize,
     /// Write the poses into this file, as CSV, the most telling first: x_mm, y_mm, theta_deg; for cameras the mark in the platform frame
     /// and the camera in the base frame besides (for balls ball and gauges), for ends the guide and where on it the end is.
@@ -219,9 +220,6 @@ pub(in super::super) struct CalibrateFit {
     pub(in super::super) json: bool,
 }
 
-/// Smallest and largest noise: an atom, and a mm or a mrad.
-const NOISES: (f64, f64) = (1e-10, 1e-3);
-
 fn length_m(text: &str) -> Result<f64, String> {
     let units = [("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3)];
     with_unit(text, &units).ok_or_else(|| "not a length from 0.1nm to 1mm, such as 50nm".to_owned())
@@ -237,6 +235,5 @@ fn with_unit(text: &str, units: &[(&str, f64)]) -> Option<f64> {
     let (number, factor) =
         (units.iter()).find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor)))?;
     let value = number.trim().parse::<f64>().ok()? * factor;
-    let (least, most) = NOISES;
-    (least..=most).contains(&value).then_some(value)
+    NOISES.contains(&value).then_some(value)
 }

@@ -13,7 +13,7 @@ use calibration::table::Table;
 use calibration::{Instrument, Kit, Noise, Seen, plan};
 use desk::calibrate::report::{Report, Truth, before_and_after, page};
 use desk::calibrate::{
-    Evidence, FitTold, Reader, Told, Verdict, Wanted, Way, apply, measure, serial, verify,
+    Evidence, FitTold, Reader, Told, Verdict, Wanted, Way, apply, measure, nm, serial, verify,
     with_references,
 };
 use desk::commission::{Chosen, ZerosBy, run as run_steps};
@@ -31,7 +31,7 @@ use super::error::CalibrateError;
 use super::fit::fitted;
 use super::measure::Kept;
 use super::reader::{Simulated, TruePose};
-use super::{line, lines, nm, read};
+use super::{line, lines, read};
 use crate::attended::SimulatedMachine;
 
 /// Noise of the camera, nm.

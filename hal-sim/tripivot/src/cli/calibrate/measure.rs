@@ -10,7 +10,7 @@ use calibration::plan::Stop;
 use calibration::table::Table;
 use calibration::{Instrument, Kit, plan};
 use desk::calibrate::{
-    MeasureError, Measured, Reader, Way, measure, rows, serial, with_references,
+    MeasureError, Measured, Reader, Way, measure, nm, rows, serial, with_references,
 };
 use desk::commission::{Attended, Machine};
 use hal_sim::machine::devices::SettingsFlash;
@@ -24,7 +24,7 @@ use super::super::error::CliError;
 use super::super::view::endpoint;
 use super::error::CalibrateError;
 use super::reader::{Asked, NoInstrument, Simulated, TruePose};
-use super::{line, nm, noise, read};
+use super::{line, noise, read};
 
 /// Begins the line that says what is measured.
 const BEGUN: &str = "# tripivot calibrate measure: ";

@@ -17,13 +17,10 @@ use std::process::ExitCode;
 use calibration::Noise;
 use calibration::file::Calibration;
 use desk::calibrate::Line;
-use kinematics::Geometry;
 
 use super::arguments::{CalibrateCommand, NoiseArguments};
 use super::error::CliError;
 use error::CalibrateError;
-
-const NM_PER_MM: f64 = 1e6;
 
 pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
     match command {
@@ -41,11 +38,6 @@ pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
 /// In track radii and rad.
 fn noise(arguments: &NoiseArguments) -> Noise {
     desk::calibrate::noise(arguments.noise, arguments.noise_theta)
-}
-
-/// A length in track radii in nm.
-fn nm(length: f64) -> f64 {
-    length * Geometry::REFERENCE.radius_mm * NM_PER_MM
 }
 
 fn read(path: &Path) -> Result<String, CalibrateError> {

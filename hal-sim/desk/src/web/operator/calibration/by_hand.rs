@@ -2,24 +2,24 @@
 
 use std::sync::Arc;
 
-use calibration::{Instrument, Seen};
+use calibration::{Instrument, Kit, Seen};
 
-use super::super::runs::Control;
-use super::status::{Asks, Told};
+use super::super::runs::{Control, Told};
+use super::status::{Asks, Status};
 use crate::calibrate::{Reader, Wanted, fields, question, reading};
 
 /// See the module.
 pub(super) struct ByHand {
     pub instrument: Instrument,
     pub control: Arc<Control>,
-    pub told: Arc<Told>,
+    pub told: Arc<Told<Status>>,
 }
 
 impl ByHand {
     fn asks(&self, wanted: &Wanted, wrong: String) {
         let numbers = question(&self.instrument, wanted);
         let words: Vec<String> = (numbers.split_whitespace())
-            .zip(WORDS)
+            .zip(words(self.instrument.kit))
             .map(|(number, word)| match number.parse::<f64>() {
                 Ok(number) => format!("{word} {number:.4}"),
                 Err(_) => format!("{word} {number}"),
@@ -36,15 +36,31 @@ impl ByHand {
 }
 
 /// What a question's numbers are.
-const WORDS: [&str; 7] = [
-    "x (mm)",
-    "y (mm)",
-    "theta (deg)",
-    "mark x (mm)",
-    "mark y (mm)",
-    "camera x (mm)",
-    "camera y (mm)",
-];
+const fn words(kit: Kit) -> [&'static str; 7] {
+    let [mark_x, mark_y, camera_x, camera_y] = match kit {
+        Kit::Balls => [
+            "ball x (mm)",
+            "ball y (mm)",
+            "gauges x (mm)",
+            "gauges y (mm)",
+        ],
+        _ => [
+            "mark x (mm)",
+            "mark y (mm)",
+            "camera x (mm)",
+            "camera y (mm)",
+        ],
+    };
+    [
+        "x (mm)",
+        "y (mm)",
+        "theta (deg)",
+        mark_x,
+        mark_y,
+        camera_x,
+        camera_y,
+    ]
+}
 
 impl Reader for ByHand {
     fn read(&mut self, wanted: &Wanted) -> Result<Seen, String> {

@@ -26,9 +26,9 @@ use serde::Deserialize;
 use tokio::sync::watch;
 
 use super::journal::Journal;
-use super::runs::{Files, Ordered, Reach};
+use super::runs::{Files, Ordered, Reach, Told};
 use crate::calibrate::Reader;
-use status::Told;
+use status::Status;
 use wish::Wish;
 use worker::Worker;
 
@@ -79,7 +79,7 @@ pub(in crate::web) struct Calibration {
     /// For the thread.
     orders: Arc<Mutex<Sender<Ordered<Order>>>>,
     reach: Reach,
-    told: Arc<Told>,
+    told: Arc<Told<Status>>,
     files: Files,
 }
 
@@ -95,7 +95,7 @@ impl Calibration {
         let this = Self {
             orders: Arc::new(Mutex::new(orders)),
             reach: reach.clone(),
-            told: Arc::new(Told::new(words)),
+            told: Arc::new(Told::new(Status::new(words))),
             files: Files::new(FOLDER),
         };
         let worker = Worker::new(
@@ -131,7 +131,7 @@ impl Calibration {
     fn pause(&self, is_paused: bool) {
         self.reach.control.pause(is_paused);
         self.told
-            .change(|status| status.is_paused = is_paused && status.runs);
+            .change(|status| status.is_paused = is_paused && status.run.runs);
     }
 
     /// The state, as a message for pages.

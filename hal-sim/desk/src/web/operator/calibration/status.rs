@@ -1,13 +1,9 @@
 //! What pages are told of a calibration.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
 use calibration::kit::KITS;
 use serde::Serialize;
-use tokio::sync::watch;
 
-use super::super::runs::{Failed, StepStatus, UNDER_WAY};
-use crate::web::bridge::json;
+use super::super::runs::{Failed, OfRun, Run, StepStatus, Told};
 
 /// Name and purpose of each step.
 const STEPS: [(&str, &str); 5] = [
@@ -40,17 +36,12 @@ pub(super) struct Status {
     pub kits: Vec<&'static str>,
     /// What reads them, unless whoever looks at a page does.
     pub reads: Option<&'static str>,
-    /// Whether something is under way.
-    pub runs: bool,
-    /// What it is, or was.
-    pub what: &'static str,
+    #[serde(flatten)]
+    pub run: Run,
     pub is_paused: bool,
     pub progress: Option<Progress>,
     pub asks: Option<Asks>,
     pub steps: Vec<StepStatus>,
-    /// Whether it ended as it was meant to.
-    pub good: bool,
-    pub said: String,
     /// Whether there is a measurement to go on with, and one to give to the controller.
     pub may_resume: bool,
     pub may_apply: bool,
@@ -79,85 +70,39 @@ pub(super) struct Asks {
     pub wrong: String,
 }
 
-/// The state, and those who are told each change of it.
-pub(super) struct Told {
-    status: Mutex<Status>,
-    tell: watch::Sender<Arc<str>>,
+impl OfRun for Status {
+    fn run(&mut self) -> &mut Run {
+        &mut self.run
+    }
 }
 
-impl Told {
+impl Status {
     /// Nothing so far. `reads`: what reads instruments.
     pub fn new(reads: Option<&'static str>) -> Self {
-        let status = Status {
+        Self {
             kits: KITS.iter().map(|kit| kit.name()).collect(),
             reads,
-            runs: false,
-            what: "",
+            run: Run::default(),
             is_paused: false,
             progress: None,
             asks: None,
             steps: (STEPS.iter())
                 .map(|(name, about)| StepStatus::waiting(name, about))
                 .collect(),
-            good: true,
-            said: String::new(),
             may_resume: false,
             may_apply: false,
             report: None,
             files: Vec::new(),
-        };
-        let (tell, _) = watch::channel(json(&status));
-        Self {
-            status: Mutex::new(status),
-            tell,
         }
     }
 
-    pub fn receiver(&self) -> watch::Receiver<Arc<str>> {
-        self.tell.subscribe()
+    /// Nothing of a measurement is under way.
+    pub fn rests(&mut self) {
+        (self.is_paused, self.progress, self.asks) = (false, None, None);
     }
+}
 
-    fn status(&self) -> MutexGuard<'_, Status> {
-        self.status.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Changes it, and tells it.
-    pub fn change<T>(&self, change: impl FnOnce(&mut Status) -> T) -> T {
-        let mut status = self.status();
-        let result = change(&mut status);
-        // Within the lock, so that none overtakes another.
-        self.tell.send_replace(json(&*status));
-        result
-    }
-
-    /// An order that comes while another is under way.
-    pub fn refuses(&self, what: &'static str) {
-        self.change(|status| {
-            // Of what runs here, pages are told all along.
-            if !status.runs {
-                (status.what, status.good) = (what, false);
-                UNDER_WAY.clone_into(&mut status.said);
-            }
-        });
-    }
-
-    /// An order begins.
-    pub fn begins(&self, what: &'static str) {
-        self.change(|status| {
-            (status.runs, status.what, status.good) = (true, what, true);
-            (status.is_paused, status.progress) = (false, None);
-            status.said.clear();
-        });
-    }
-
-    /// It is over.
-    pub fn ends(&self, good: bool, said: String) {
-        self.change(|status| {
-            (status.runs, status.good, status.said) = (false, good, said);
-            (status.is_paused, status.progress, status.asks) = (false, None, None);
-        });
-    }
-
+impl Told<Status> {
     /// A step begins; those behind it are still to come.
     pub fn step_begins(&self, name: &str) {
         self.change(|status| {

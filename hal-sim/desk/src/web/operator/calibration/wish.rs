@@ -1,19 +1,12 @@
 //! What a page asks for, in its own numbers.
 
-use core::ops::RangeInclusive;
-
 use calibration::{Instrument, Kit, Noise};
 use serde::Deserialize;
 
-use crate::calibrate::noise;
+use crate::calibrate::{NOISES, POSES, noise};
 
 const M_PER_NM: f64 = 1e-9;
 const RAD_PER_URAD: f64 = 1e-6;
-/// From an atom to 1 mm, nm; and from 0.1 nrad to 1 mrad, urad.
-const NOISES_NM: RangeInclusive<f64> = 0.1..=1e6;
-const NOISES_URAD: RangeInclusive<f64> = 1e-4..=1e3;
-const POSES: RangeInclusive<usize> = 12..=3000;
-
 /// See the module.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -33,13 +26,12 @@ impl Wish {
             .kit
             .parse()
             .map_err(|_| format!("'{}' is no instrument", self.kit))?;
-        if !NOISES_NM.contains(&self.noise_nm) {
+        let length_m = self.noise_nm * M_PER_NM;
+        if !NOISES.contains(&length_m) {
             return Err("the noise of a length is to be 0.1 nm to 1 mm".to_owned());
         }
-        if !self
-            .noise_urad
-            .is_none_or(|noise| NOISES_URAD.contains(&noise))
-        {
+        let angle_rad = self.noise_urad.map(|noise| noise * RAD_PER_URAD);
+        if !angle_rad.is_none_or(|noise| NOISES.contains(&noise)) {
             return Err("the noise of theta is to be 0.0001 to 1000 urad".to_owned());
         }
         if !POSES.contains(&self.poses) {
@@ -48,11 +40,7 @@ impl Wish {
                 "so many poses are to be measured: {least} to {most}"
             ));
         }
-        let angle_rad = self.noise_urad.map(|noise| noise * RAD_PER_URAD);
-        Ok(Instrument::new(
-            kit,
-            noise(self.noise_nm * M_PER_NM, angle_rad),
-        ))
+        Ok(Instrument::new(kit, noise(length_m, angle_rad)))
     }
 
     /// The same in front of a machine that does not repeat to so much, rad.

@@ -8,16 +8,16 @@ use ::calibration::file::Calibration;
 use ::calibration::table::Table;
 use ::calibration::{Instrument, Kit, plan};
 
-use super::super::runs::{Failed, Files, Ordered, PageMachine, Reach, places};
+use super::super::runs::{Control, Failed, Files, Ordered, PageMachine, Reach, Told, places};
 use super::by_hand::ByHand;
 use super::measurement::Measurement;
-use super::status::{APPLY, FIT, MEASURE, PLAN, Progress, Told, VERIFY};
+use super::status::{APPLY, FIT, MEASURE, PLAN, Progress, Status, VERIFY};
 use super::wish::Wish;
 use super::{Instruments, Order};
 use crate::calibrate::report::{Report, left_by_visit, page};
 use crate::calibrate::{
-    self, ApplyError, Evidence, FitTold, Fitted, PlanTold, Reader, Verdict, apply, measure, serial,
-    switch_off, verify,
+    self, ApplyError, Evidence, FitTold, Fitted, Line, PlanTold, Reader, Verdict, apply, measure,
+    serial, switch_off, verify,
 };
 use crate::commission::Machine;
 use crate::web::operator::journal::Journal;
@@ -31,7 +31,7 @@ const REPORT: &str = "report.html";
 /// See the module.
 pub(super) struct Worker {
     reach: Reach,
-    told: Arc<Told>,
+    told: Arc<Told<Status>>,
     files: Files,
     journal: Journal,
     instruments: Option<Instruments>,
@@ -66,7 +66,7 @@ fn failed(what: impl ToString, advice: &str) -> Failed {
 impl Worker {
     pub const fn new(
         reach: Reach,
-        told: Arc<Told>,
+        told: Arc<Told<Status>>,
         files: Files,
         journal: Journal,
         instruments: Option<Instruments>,
@@ -90,19 +90,19 @@ impl Worker {
         } in orders
         {
             let what = what(&order);
-            self.told.begins(what);
+            self.told.begins(what, Status::rests);
             let came = self.carry_out(&order, &key);
             let (good, said) = match came {
                 Ok(said) => (true, said),
                 Err(said) => (false, said),
             };
             self.journal.note(&who, &format!("{what}…"), &said);
-            self.told.change(|status| {
-                let unfinished = |measurement: &Measurement| !measurement.is_whole();
-                status.may_resume = self.measurement.as_ref().is_some_and(unfinished);
-                status.may_apply = self.made.is_some();
+            let unfinished = |measurement: &Measurement| !measurement.is_whole();
+            let may_resume = self.measurement.as_ref().is_some_and(unfinished);
+            self.told.ends(good, said, |status| {
+                (status.may_resume, status.may_apply) = (may_resume, self.made.is_some());
+                status.rests();
             });
-            self.told.ends(good, said);
             self.files.keep_plots(&self.told.plots());
             self.reach.control.over();
         }
@@ -198,52 +198,32 @@ impl Worker {
     }
 
     fn visit(&mut self, machine: &mut PageMachine) -> Done<()> {
-        let unfinished = self
-            .measurement
-            .take()
-            .filter(|measurement| !measurement.is_whole());
-        let mut measurement = unfinished
-            .ok_or_else(|| failed("there is no measurement to go on with", "begin one"))?;
+        let measurement = self.measurement.as_mut();
+        let Some(measurement) = measurement.filter(|measurement| !measurement.is_whole()) else {
+            return Err(failed("there is no measurement to go on with", "begin one"));
+        };
+        let (told, files, control) = (&self.told, &self.files, &self.reach.control);
         let instrument = measurement.instrument.clone();
         let stops = measurement.stops.clone();
-        let mut reader = self.reader(&instrument)?;
+        let mut reader = reader(&instrument, self.instruments.as_ref(), told, control)?;
         measurement.begin();
         let way = measurement.way(&stops, &instrument.ends);
-        let (told, files, control) = (&self.told, &self.files, &self.reach.control);
         progress(told, measurement.visits, stops.len());
         let visited = measure(machine, reader.as_mut(), &way, &mut |measured| {
             let looks = measurement.keep(measured);
             progress(told, measurement.visits, stops.len());
             if looks {
-                look(told, files, &measurement);
+                look(told, files, measurement);
             }
             control.stay_paused();
             Ok(())
         });
-        self.put(MEASURED, &measurement.text);
+        put(told, files, MEASURED, &measurement.text);
         let made = measurement.visits;
-        self.measurement = Some(measurement);
         visited.map_err(|error| {
             let what = format!("{error}; {made} of {} visits are kept", stops.len());
             failed(what, "\u{201c}Go on\u{201d} continues behind them")
         })
-    }
-
-    /// What reads this instrument.
-    fn reader(&self, instrument: &Instrument) -> Done<Box<dyn Reader>> {
-        if let Some(instruments) = &self.instruments
-            && instrument.kit != Kit::Ends
-        {
-            return (instruments.set_up)(instrument).ok_or_else(|| {
-                let what = format!("{} has no {}", instruments.words, instrument.kit);
-                failed(what, "choose another instrument")
-            });
-        }
-        Ok(Box::new(ByHand {
-            instrument: instrument.clone(),
-            control: Arc::clone(&self.reach.control),
-            told: Arc::clone(&self.told),
-        }))
     }
 
     /// What is expected of the calibration.
@@ -256,7 +236,8 @@ impl Worker {
             .map_err(|what| failed(what, MORE_POSES))?;
         let fitted = measurement.fitted(&table, temperature_c);
         let fitted = fitted.map_err(|error| failed(error, MORE_POSES))?;
-        self.put(CALIBRATION, &fitted.calibration.to_text());
+        let text = fitted.calibration.to_text();
+        put(&self.told, &self.files, CALIBRATION, &text);
         let told = FitTold::new(&fitted, &table, CALIBRATION);
         let plots = places(&left_by_visit(&fitted.fit, &fitted.left), &self.files);
         self.told.step(FIT, |step| {
@@ -296,11 +277,10 @@ impl Worker {
         })?;
         self.applied = Some(calibration.clone());
         let lines = told.lines().filter_map(|line| line.trim().split_once('='));
-        let lines: Vec<_> = lines
-            .map(|(what, text)| crate::commission::Finding::told(what, text))
-            .collect();
         self.told.step(APPLY, |step| {
-            step.findings = lines.iter().map(Into::into).collect()
+            step.findings = lines
+                .map(|(what, text)| Line::new(what, text).into())
+                .collect();
         });
         Ok(())
     }
@@ -312,8 +292,8 @@ impl Worker {
             .clone();
         let instrument = wish.before_scatter(calibration.made.noise().encoder_rad);
         let instrument = instrument.map_err(|what| failed(what, "look at the numbers above"))?;
-        let mut reader = self.reader(&instrument)?;
         let (told, control) = (&self.told, &self.reach.control);
+        let mut reader = reader(&instrument, self.instruments.as_ref(), told, control)?;
         let verified = verify(
             machine,
             reader.as_mut(),
@@ -359,16 +339,6 @@ impl Worker {
         Ok(())
     }
 
-    /// A file for pages.
-    fn put(&self, name: &str, text: &str) {
-        let place = self.files.put(name, text);
-        self.told.change(|status| {
-            if !status.files.contains(&place) {
-                status.files.push(place);
-            }
-        });
-    }
-
     fn machine(&self, key: &str) -> Result<PageMachine, String> {
         PageMachine::open(&self.reach, key, NAME)
     }
@@ -378,12 +348,43 @@ const NOT_REACHED: &str = "look at the controller's line, and at who commands it
 const MORE_POSES: &str = "measure at more poses, or look at the instrument";
 const TAKE_OUT: &str = "another machine's, damaged, or the instrument is not what was said: \u{201c}Out of force\u{201d} takes it out";
 
-fn progress(told: &Told, made: usize, of: usize) {
+/// What reads this instrument.
+fn reader(
+    instrument: &Instrument,
+    instruments: Option<&Instruments>,
+    told: &Arc<Told<Status>>,
+    control: &Arc<Control>,
+) -> Done<Box<dyn Reader>> {
+    match instruments {
+        Some(instruments) if instrument.kit != Kit::Ends => (instruments.set_up)(instrument)
+            .ok_or_else(|| {
+                let what = format!("{} has no {}", instruments.words, instrument.kit);
+                failed(what, "choose another instrument")
+            }),
+        _ => Ok(Box::new(ByHand {
+            instrument: instrument.clone(),
+            control: Arc::clone(control),
+            told: Arc::clone(told),
+        })),
+    }
+}
+
+fn progress(told: &Told<Status>, made: usize, of: usize) {
     told.change(|status| status.progress = Some(Progress { made, of }));
 }
 
+/// A file for pages.
+fn put(told: &Told<Status>, files: &Files, name: &str, text: &str) {
+    let place = files.put(name, text);
+    told.change(|status| {
+        if !status.files.contains(&place) {
+            status.files.push(place);
+        }
+    });
+}
+
 /// What the visits so far say.
-fn look(told: &Told, files: &Files, measurement: &Measurement) {
+fn look(told: &Told<Status>, files: &Files, measurement: &Measurement) {
     let Ok(table) = measurement.table() else {
         return;
     };
@@ -397,8 +398,7 @@ fn look(told: &Told, files: &Files, measurement: &Measurement) {
             });
         }
         Err(error) => told.step(MEASURE, |step| {
-            let line = crate::commission::Finding::told("so far", error.to_string());
-            step.findings = vec![(&line).into()];
+            step.findings = vec![Line::judged("so far", error.to_string(), false).into()];
         }),
     }
     files.keep_plots(&told.plots());

@@ -28,9 +28,9 @@ use serde::Deserialize;
 use tokio::sync::watch;
 
 use super::journal::Journal;
-use super::runs::{Files, Ordered, Person, Reach};
+use super::runs::{Files, Ordered, Person, Reach, Told};
 use crate::commission::Numbers;
-use status::Told;
+use status::Status;
 use worker::Worker;
 
 /// Where its files are.
@@ -78,7 +78,7 @@ pub(in crate::web) struct Commissioning {
     /// For the thread.
     orders: Arc<Mutex<Sender<Ordered<Order>>>>,
     reach: Reach,
-    told: Arc<Told>,
+    told: Arc<Told<Status>>,
     files: Files,
 }
 
@@ -89,7 +89,7 @@ impl Commissioning {
         let this = Self {
             orders: Arc::new(Mutex::new(orders)),
             reach: reach.clone(),
-            told: Arc::new(Told::new()),
+            told: Arc::new(Told::new(Status::new())),
             files: Files::new(FOLDER),
         };
         let worker = Worker {

@@ -1,29 +1,20 @@
 //! What pages are told of a commissioning.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
 use serde::Serialize;
-use tokio::sync::watch;
 
-use super::super::runs::{Failed, Files, PlotPlace, StepStatus, UNDER_WAY, places};
+use super::super::runs::{Failed, Files, OfRun, PlotPlace, Run, StepStatus, Told, places};
 use crate::commission::{Done, MOST_SENSITIVITY, Numbers, STEPS, Step, Task, Worth};
-use crate::web::bridge::json;
 
 /// What pages are told.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename = "commissioning")]
 pub(super) struct Status {
-    /// Whether something is under way.
-    pub runs: bool,
-    /// What it is, or was.
-    pub what: &'static str,
+    #[serde(flatten)]
+    pub run: Run,
     /// Names of all that there are.
     pub all_steps: Vec<&'static str>,
     pub steps: Vec<StepStatus>,
     pub asks: Option<Asks>,
-    /// Whether it ended as it was meant to.
-    pub good: bool,
-    pub said: String,
     /// Where the report is, once there is one, and the tables.
     pub report: Option<String>,
     pub tables: Vec<String>,
@@ -86,91 +77,47 @@ fn take(step: &mut StepStatus, done: &Done, files: &Files) {
     }));
 }
 
-/// The state, and those who are told each change of it.
-pub(super) struct Told {
-    status: Mutex<Status>,
-    tell: watch::Sender<Arc<str>>,
+impl OfRun for Status {
+    fn run(&mut self) -> &mut Run {
+        &mut self.run
+    }
 }
 
-impl Told {
+impl Status {
+    /// Nothing so far.
     pub fn new() -> Self {
-        let status = Status {
-            runs: false,
-            what: "",
+        Self {
+            run: Run::default(),
             all_steps: STEPS.iter().map(|step| step.name).collect(),
             steps: Vec::new(),
             asks: None,
-            good: true,
-            said: String::new(),
             report: None,
             tables: Vec::new(),
             before: None,
             tuning: None,
-        };
-        let (tell, _) = watch::channel(json(&status));
-        Self {
-            status: Mutex::new(status),
-            tell,
         }
     }
 
-    pub fn receiver(&self) -> watch::Receiver<Arc<str>> {
-        self.tell.subscribe()
+    /// These steps begin.
+    pub fn begin(&mut self, steps: &[&Step]) {
+        let waiting = |step: &&Step| StepStatus::waiting(step.name, step.about);
+        self.steps = steps.iter().map(waiting).collect();
+        self.report = None;
+        next(&mut self.steps);
     }
 
-    fn status(&self) -> MutexGuard<'_, Status> {
-        self.status.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Changes it, and tells it.
-    pub fn change<T>(&self, change: impl FnOnce(&mut Status) -> T) -> T {
-        let mut status = self.status();
-        let result = change(&mut status);
-        // Within the lock, so that none overtakes another.
-        self.tell.send_replace(json(&*status));
-        result
-    }
-
-    /// Something begins; with these steps, if it has some.
-    pub fn begins(&self, what: &'static str, steps: Option<&[&'static Step]>) {
-        self.change(|status| {
-            (status.runs, status.what, status.good) = (true, what, true);
-            status.said.clear();
-            if let Some(steps) = steps {
-                status.steps = (steps
-                    .iter()
-                    .map(|step| StepStatus::waiting(step.name, step.about)))
-                .collect();
-                status.report = None;
-                next(&mut status.steps);
+    /// No step runs, and nobody is asked for anything.
+    pub fn rests(&mut self) {
+        self.asks = None;
+        for step in &mut self.steps {
+            if step.state == "runs" {
+                step.state = "waits";
             }
-        });
+        }
     }
+}
 
-    /// It is over.
-    pub fn ends(&self, good: bool, said: String) {
-        self.change(|status| {
-            (status.runs, status.good, status.said) = (false, good, said);
-            status.asks = None;
-            for step in &mut status.steps {
-                if step.state == "runs" {
-                    step.state = "waits";
-                }
-            }
-        });
-    }
-
-    /// An order that comes while another is under way.
-    pub fn refuses(&self, what: &'static str) {
-        self.change(|status| {
-            // Of what runs here, pages are told all along.
-            if !status.runs {
-                (status.what, status.good) = (what, false);
-                UNDER_WAY.clone_into(&mut status.said);
-            }
-        });
-    }
-
+impl Told<Status> {
     /// A step has ended.
     pub fn step(&self, done: &Done, files: &Files) {
         self.change(|status| {

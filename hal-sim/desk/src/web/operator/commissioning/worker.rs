@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
-use super::super::runs::{Files, Ordered, PageMachine, Person, Reach, places};
+use super::super::runs::{Files, Ordered, PageMachine, Person, Reach, Told, places};
 use super::Order;
-use super::status::{Told, Tried, Tuning};
+use super::status::{Status, Tried, Tuning};
 use crate::commission::{
     Backup, Chosen, Conditions, Done, Machine, Numbers, Ran, Results, Tunable, ZerosBy, page, run,
 };
@@ -21,7 +21,7 @@ const BEFORE: &str = "before.txt";
 /// See the module.
 pub(super) struct Worker {
     pub reach: Reach,
-    pub told: Arc<Told>,
+    pub told: Arc<Told<Status>>,
     pub files: Files,
     pub journal: Journal,
     pub person: Option<Person>,
@@ -47,7 +47,7 @@ impl Worker {
                 Err(said) => (false, said),
             };
             self.journal.note(&ordered.who, &format!("{what}…"), &said);
-            self.told.ends(good, said);
+            self.told.ends(good, said, Status::rests);
             self.files.keep_plots(&self.told.plots());
             self.reach.control.over();
         }
@@ -70,20 +70,22 @@ impl Worker {
             Order::Only { step, .. } => Chosen::only(step),
             Order::Tune => Ok(Chosen::tune()),
             Order::Measure => {
-                self.told.begins(what, Some(Chosen::response().steps()));
+                self.told
+                    .begins(what, |status| status.begin(Chosen::response().steps()));
                 return self.steps(key, &Chosen::response(), None);
             }
             other => {
-                self.told.begins(what, None);
+                self.told.begins(what, |_| ());
                 return self.by_hand(key, other);
             }
         };
         let chosen = chosen.map_err(|error| {
             // Refused under the name of what was asked for.
-            self.told.begins(what, None);
+            self.told.begins(what, |_| ());
             error.to_string()
         })?;
-        self.told.begins(what, Some(chosen.steps()));
+        self.told
+            .begins(what, |status| status.begin(chosen.steps()));
         let scale_periods = match order {
             Order::Commission { scale_periods, .. } | Order::Only { scale_periods, .. } => {
                 *scale_periods

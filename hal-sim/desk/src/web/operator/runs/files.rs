@@ -9,6 +9,7 @@ use axum::response::{IntoResponse, Response};
 /// A report has its style in it, and its plots; it runs nothing and asks for nothing.
 const POLICY: HeaderValue =
     HeaderValue::from_static("default-src 'none'; style-src 'unsafe-inline'; sandbox");
+
 /// See the module.
 #[derive(Clone)]
 pub(in crate::web) struct Files {

@@ -26,6 +26,7 @@ const PATIENCE: f64 = 200.0;
 const LEAST_PATIENCE_S: f64 = 10.0;
 /// What the jig takes to hold, by a simulated person, s.
 const JIG_S: f64 = 0.1;
+
 /// Who is told what a person is asked for, and whether somebody simulated does it; none once that is done.
 pub(in super::super) type Asks = Box<dyn Fn(Option<(Task, bool)>) + Send>;
 

@@ -5,6 +5,7 @@
 //! | here | how the controller is reached; an order and whose it is |
 //! | `control` | what reaches a run from outside: that a task is done, what an instrument reads, that it is to wait, that it is to end |
 //! | `machine` | the machine as a run sees it, over the way that its page has to the controller |
+//! | `told` | what pages are told of a run, and that they are |
 //! | `steps` | steps as pages are told of them |
 //! | `files` | plots, tables and reports, for browsers to fetch |
 
@@ -12,6 +13,7 @@ mod control;
 mod files;
 mod machine;
 mod steps;
+mod told;
 
 use std::sync::Arc;
 
@@ -23,6 +25,7 @@ pub(in crate::web) use control::Control;
 pub(in crate::web) use files::Files;
 pub(super) use machine::PageMachine;
 pub(super) use steps::{Failed, PlotPlace, StepStatus, places};
+pub(super) use told::{OfRun, Run, Told};
 
 /// Who does with a simulated machine what a person does with a real one.
 pub type Person = Arc<dyn Fn(Task) + Send + Sync>;
@@ -34,9 +37,6 @@ pub(in crate::web) struct Reach {
     pub runtime: Handle,
     pub control: Arc<Control>,
 }
-
-/// To a page whose order meets another that is under way.
-pub(super) const UNDER_WAY: &str = "another order is under way: it has the stage for itself";
 
 /// An order, and whose it is.
 #[derive(Debug, PartialEq)]
