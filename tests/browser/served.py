@@ -4,7 +4,7 @@ import re
 import signal
 import subprocess
 
-PATIENCE_S = 60
+PATIENCE_S = 180
 """Far longer than one takes to end, on a busy machine too."""
 
 

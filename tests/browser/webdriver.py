@@ -11,7 +11,7 @@ import urllib.request
 
 ESCAPE, ENTER, UP, RIGHT = "\ue00c", "\ue007", "\ue013", "\ue014"
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
-PATIENCE_S = 60
+PATIENCE_S = 180
 """Far longer than anything here takes, on a busy machine too."""
 FLAGS = [
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",

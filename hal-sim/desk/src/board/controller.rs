@@ -21,10 +21,11 @@ pub(super) struct Controller {
 
 impl Controller {
     pub fn open(endpoint: &Endpoint, is_emulated: bool) -> Result<Self, RecordError> {
-        let mut desk = Desk::open(endpoint)?;
-        if is_emulated {
-            desk.set_patience(EMULATED_PATIENCE);
-        }
+        let desk = if is_emulated {
+            Desk::open_with(endpoint, EMULATED_PATIENCE)?
+        } else {
+            Desk::open(endpoint)?
+        };
         Ok(Self { desk, is_emulated })
     }
 

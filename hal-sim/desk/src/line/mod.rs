@@ -12,14 +12,16 @@ use std::time::{Duration, Instant};
 pub use port::Endpoint;
 pub(crate) use port::Port;
 
-/// How long the controller may be silent in the middle of an answer, at first.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// How long the controller may be silent in the middle of an answer, unless it is known to be slow.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(5);
 /// How long the line has to be silent before it is taken for empty.
 const SILENCE: Duration = Duration::from_millis(50);
 /// How long it may go on talking unasked.
 const TALK: Duration = Duration::from_secs(3);
 /// How long a second connection may take to answer.
 const ANOTHER: Duration = Duration::from_secs(1);
+/// How often it is asked who it is, where answers to somebody who is gone may come first.
+const MEETINGS: usize = 5;
 /// Who made it, what it is, its serial number and its version.
 const IDENTITY_FIELDS: usize = 4;
 /// Longest answer: more than the recorder of any controller holds.
@@ -45,14 +47,15 @@ pub(crate) struct Answer {
 }
 
 impl Line {
-    /// Opens it, throws away what is still on its way, and asks who is there.
+    /// Opens it, throws away what is still on its way, and asks who is there; it may be silent for `patience` in the middle of
+    /// an answer.
     ///
     /// # Errors
     /// What the port says; `InvalidData` when what is there cannot be a controller.
-    pub fn open(endpoint: &Endpoint) -> io::Result<Self> {
+    pub fn open(endpoint: &Endpoint, patience: Duration) -> io::Result<Self> {
         let mut line = Self {
             port: endpoint.open()?,
-            patience: PATIENCE,
+            patience,
             received: Vec::new(),
             searched: 0,
             identity: String::new(),
@@ -60,18 +63,41 @@ impl Line {
         // Ends a line that somebody left unfinished.
         line.port.write_all(b"\n")?;
         line.wait_for_silence()?;
-        line.identity = line.ask_known(&["*IDN?"])?.remove(0);
-        if line.identity.split(',').count() < IDENTITY_FIELDS {
-            let said = line.identity.escape_debug();
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidData,
-                format!(
-                    "asked who it is it says “{said}”: this is no controller, or the line has another rate"
-                ),
-            ));
+        let mut meetings = 1;
+        while !line.meet()? {
+            if meetings == MEETINGS {
+                return Err(line.no_controller());
+            }
+            meetings += 1;
+            line.wait_for_silence()?;
         }
-        line.ask_known(&["ERR?"])?;
         Ok(line)
+    }
+
+    /// Asks who is there; whether that is what it answers, and nothing else comes. A slow controller may still answer what
+    /// somebody asked who has gone since.
+    fn meet(&mut self) -> io::Result<bool> {
+        self.port.write_all(b"*IDN?\nERR?\n")?;
+        self.identity = self.answer()?;
+        let is_identity = self.identity.split(',').count() >= IDENTITY_FIELDS;
+        let error = self.answer().map_err(|error| {
+            if error.kind() == io::ErrorKind::TimedOut && !is_identity {
+                self.no_controller()
+            } else {
+                error
+            }
+        })?;
+        Ok(is_identity && error.parse::<u16>().is_ok() && !self.receive(SILENCE)?)
+    }
+
+    fn no_controller(&self) -> io::Error {
+        let said = self.identity.escape_debug();
+        io::Error::new(
+            io::ErrorKind::InvalidData,
+            format!(
+                "asked who it is it says “{said}”: this is no controller, or the line has another rate"
+            ),
+        )
     }
 
     /// Whether a second connection is answered beside the first. Behind a TCP port may lie one serial line, whose next client waits
@@ -207,4 +233,62 @@ fn text(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let lines: Vec<&str> = text.trim_end().split('\n').map(str::trim_end).collect();
     lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{BufRead, BufReader};
+    use std::net::TcpListener;
+    use std::thread;
+
+    const IDENTITY: &str = "Tripivot,XYT-1,7,0.1.0";
+
+    /// A controller whose first answer comes behind these, and whose every one takes so long.
+    fn controller(mut late: Vec<&'static str>, pause: Duration) -> Endpoint {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap().to_string();
+        thread::spawn(move || {
+            let (stream, _) = listener.accept().unwrap();
+            let mut replies = stream.try_clone().unwrap();
+            for line in BufReader::new(stream).lines().map_while(Result::ok) {
+                let reply = match line.as_str() {
+                    "*IDN?" => IDENTITY,
+                    "ERR?" => "0",
+                    "POS? X" => "X=1",
+                    _ => continue,
+                };
+                thread::sleep(pause);
+                for reply in late.drain(..).chain([reply]) {
+                    replies.write_all(format!("{reply}\n").as_bytes()).unwrap();
+                }
+            }
+        });
+        Endpoint::Tcp(address)
+    }
+
+    #[test]
+    fn late_answers_to_somebody_else_are_not_taken_for_ones_own() {
+        let pause = Duration::from_millis(5);
+        for late in [
+            vec![],
+            vec!["0"],
+            vec![IDENTITY],
+            vec!["0", IDENTITY, "0", "temperature 21.5"],
+        ] {
+            let mut line = Line::open(&controller(late, pause), PATIENCE).unwrap();
+            assert_eq!(line.identity(), IDENTITY);
+            let reply = line.ask("POS? X").unwrap().reply;
+            assert_eq!(reply.as_deref(), Some("X=1"));
+        }
+    }
+
+    #[test]
+    fn a_slow_controller_needs_patience() {
+        let pause = Duration::from_millis(300);
+        let hurried = Line::open(&controller(vec![], pause), Duration::from_millis(100));
+        assert_eq!(hurried.err().unwrap().kind(), io::ErrorKind::TimedOut);
+        let mut line = Line::open(&controller(vec![], pause), PATIENCE).unwrap();
+        assert_eq!(line.ask_known(&["POS? X"]).unwrap(), ["X=1"]);
+    }
 }

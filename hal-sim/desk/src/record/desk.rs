@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::Record;
 use super::{RecordError, answer};
-use crate::line::{Endpoint, Line};
+use crate::line::{Endpoint, Line, PATIENCE};
 
 /// How often the length of the record is asked for.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -21,8 +21,13 @@ pub(crate) struct Desk {
 
 impl Desk {
     pub fn open(endpoint: &Endpoint) -> Result<Self, RecordError> {
+        Self::open_with(endpoint, PATIENCE)
+    }
+
+    /// One that may be so slow.
+    pub fn open_with(endpoint: &Endpoint, patience: Duration) -> Result<Self, RecordError> {
         let place = endpoint.to_string();
-        match Line::open(endpoint) {
+        match Line::open(endpoint, patience) {
             Ok(line) => Ok(Self { line, place }),
             Err(error) => Err(RecordError::Unreachable { place, error }),
         }

@@ -20,8 +20,7 @@ use super::password::random_text;
 use super::request::Refusal;
 use super::stops::Stops;
 use super::watch::{FAST, SLOW_EVERY, slow};
-use crate::line::{Answer, Line};
-use crate::line::{Endpoint, Port};
+use crate::line::{Answer, Endpoint, Line, PATIENCE, Port};
 
 /// Between two status messages: a screen's refresh.
 const PERIOD: Duration = Duration::from_micros(16_667);
@@ -30,6 +29,9 @@ const PERIOD: Duration = Duration::from_micros(16_667);
 const IDLE_PERIOD: Duration = Duration::from_millis(100);
 /// Between two attempts to reach the controller.
 const RETRY: Duration = Duration::from_millis(500);
+/// Longest time for which the controller may be silent in the middle of an answer: it is twice as long each time that it was
+/// too short, so that one that is slow is found.
+const LONGEST_PATIENCE: Duration = Duration::from_secs(80);
 /// Requests that may wait for the line.
 const WAITING: usize = 64;
 /// Status messages that a viewer may be behind before it loses some.
@@ -307,10 +309,16 @@ struct Done;
 impl Worker {
     fn run(self) {
         let mut was_there = false;
+        let mut patience = PATIENCE;
         loop {
-            let reason = match self.serve(&mut was_there) {
+            let reason = match self.serve(&mut was_there, patience) {
                 Ok(Done) => return,
                 Err(error) => error,
+            };
+            patience = if reason.kind() == io::ErrorKind::TimedOut {
+                LONGEST_PATIENCE.min(patience * 2)
+            } else {
+                PATIENCE
             };
             if reason.kind() == io::ErrorKind::InvalidData && !was_there {
                 // Said once is enough.
@@ -325,8 +333,8 @@ impl Worker {
     }
 
     /// Serves as long as the line holds.
-    fn serve(&self, was_there: &mut bool) -> io::Result<Done> {
-        let mut line = Line::open(&self.endpoint)?;
+    fn serve(&self, was_there: &mut bool, patience: Duration) -> io::Result<Done> {
+        let mut line = Line::open(&self.endpoint, patience)?;
         *was_there = true;
         self.set_bypass(Some(line.bypass()?));
         let takes_several = self.endpoint.is_tcp() && Line::has_another(&self.endpoint);

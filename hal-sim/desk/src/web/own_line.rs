@@ -13,8 +13,7 @@ use tokio::sync::oneshot;
 
 use super::request::Refusal;
 use super::stops::Stops;
-use crate::line::{Answer, Line};
-use crate::line::{Endpoint, Port};
+use crate::line::{self, Answer, Endpoint, Line, Port};
 
 /// Requests that may wait for the line.
 const WAITING: usize = 16;
@@ -144,7 +143,7 @@ impl Worker {
     }
 
     fn open(&self) -> io::Result<Line> {
-        let mut line = Line::open(&self.endpoint)?;
+        let mut line = Line::open(&self.endpoint, line::PATIENCE)?;
         {
             let mut open = self.port.lock().unwrap_or_else(PoisonError::into_inner);
             if open.is_over {
