@@ -46,8 +46,6 @@ pub enum At {
 const TOUCHING_DISK: f64 = 0.88;
 /// So far the other guides keep from their ends, track radii.
 pub(crate) const CLEAR_OF_ENDS: core::ops::Range<f64> = 0.18..1.82;
-/// Beyond this angle between pivot and guide no end is inside that disk.
-const MOST_LEAN_RAD: f64 = 0.2;
 
 /// So far from the disk's rim a mark is looked for: it is not where it was drawn, nor is the camera, and the stage follows.
 const FOUND_WITHIN: f64 = 0.015;
@@ -136,14 +134,16 @@ fn under_camera(instrument: &Instrument, [mark, camera, turn]: [f64; 3]) -> Opti
     (pose[0].hypot(pose[1]) < DISK - FOUND_WITHIN).then_some(Stop { pose, at })
 }
 
-/// A pivot at an end of its guide and the others not: with the pivot's angle to its guide, `C = P - rho u`.
+/// A pivot at an end of its guide and the others not: `C = P - rho u`, and the guide stands at an angle to the pivot's radius that
+/// leaves C in the disk that is touched from, `|C|^2 = 1 + rho^2 - 2 rho cos(angle)`.
 fn against_end(instrument: &Instrument, [end, lean, turn]: [f64; 3]) -> Option<Stop> {
     let end = pick(end, instrument.ends.len());
     let &(guide, rho) = instrument.ends.get(end)?;
     let theta = (turn - 0.5) * TAU;
-    let (sin, cos) = (theta + GUIDES_RAD.get(guide)?).sin_cos();
-    let (ring_sin, ring_cos) =
-        (theta + GUIDES_RAD[guide] + (2.0 * lean - 1.0) * MOST_LEAN_RAD).sin_cos();
+    let direction = theta + GUIDES_RAD.get(guide)?;
+    let (sin, cos) = direction.sin_cos();
+    let most_lean_rad = ((1.0 + rho * rho - TOUCHING_DISK.powi(2)) / (2.0 * rho)).acos();
+    let (ring_sin, ring_cos) = (direction + (2.0 * lean - 1.0) * most_lean_rad).sin_cos();
     let pose = [ring_cos - rho * cos, ring_sin - rho * sin, theta];
     let [x, y, _] = pose;
     let drawn = inverse::<f64>(&Pose { x, y, theta }).ok()?;
