@@ -59,7 +59,23 @@ pub fn variances(
     sizes: &[f64],
     poses: &[[f64; 3]],
 ) -> Option<Vec<[f64; 2]>> {
-    let mut by_unknowns = DMatrix::zeros(3 * poses.len(), factor.root.ncols());
+    let by_unknowns = by_unknowns(machine, factor.root.ncols(), sizes, poses)?;
+    let spread = factor.spread(&by_unknowns.transpose())?;
+    let variance = |row: usize| spread.column(row).norm_squared();
+    let of_pose = |at: usize| [variance(at) + variance(at + 1), variance(at + 2)];
+    Some((0..poses.len()).map(|pose| of_pose(3 * pose)).collect())
+}
+
+/// Errors of commanded poses, with the best frames and scale of all of them, by each unknown of a fit in its size: three rows a pose (track
+/// radii, rad). `None` where a pose is out of reach.
+#[must_use]
+pub fn by_unknowns(
+    machine: &Machine,
+    unknowns: usize,
+    sizes: &[f64],
+    poses: &[[f64; 3]],
+) -> Option<DMatrix<f64>> {
+    let mut by_unknowns = DMatrix::zeros(3 * poses.len(), unknowns);
     for (pose, at) in poses.iter().zip((0..).step_by(3)) {
         let readings_rad = readings_rad(machine, pose).ok()?;
         let by_numbers = position(machine, &readings_rad).ok()?.by_numbers;
@@ -71,8 +87,5 @@ pub fn variances(
         }
     }
     take_out(&mut by_unknowns, poses);
-    let spread = factor.spread(&by_unknowns.transpose())?;
-    let variance = |row: usize| spread.column(row).norm_squared();
-    let of_pose = |at: usize| [variance(at) + variance(at + 1), variance(at + 2)];
-    Some((0..poses.len()).map(|pose| of_pose(3 * pose)).collect())
+    Some(by_unknowns)
 }
