@@ -259,8 +259,25 @@ fn what_a_machine_does_not_repeat_is_found() {
             size.place_rms * NM
         );
         assert!((fit.scatter_rad / 3e-6 - 1.0).abs() < 0.08, "seed {seed}");
-        assert!((fit.chi2 - 1.0).abs() < 1e-2 && fit.chi2_of_noise > 5.0);
+        // Scatter is found from the rows that tell most of it, chi^2 is of all alike: chance alone would take it 0.07 apart.
+        assert!((fit.chi2 - 1.0).abs() < 2e-2 && fit.chi2_of_noise > 5.0);
         assert!((0.7..1.4).contains(&ratio), "seed {seed}: {ratio}");
+    }
+}
+
+/// Machines that repeat, and whose noise looks most like scatter of the 50 that are published: with all of their excess put down to it
+/// the first would have 3.25 urad, most of what its fit promises.
+#[test]
+fn chance_is_hardly_taken_for_scatter() {
+    let instrument = instrument(Kit::Xyt, 500.0, 10.0);
+    let stops = stops(&instrument, 200);
+    for seed in [28, 41] {
+        let truth = workshop::machine(seed);
+        let random = &mut Random::new(1000 + seed);
+        let visits = survey(&truth, &instrument, &stops, random).expect("inside the disk");
+        let fit = fit(&instrument, &visits).expect("a fit");
+        println!("seed {seed}: scatter {:.3} urad", fit.scatter_rad * 1e6);
+        assert!(fit.scatter_rad < 1.05e-6, "seed {seed}");
     }
 }
 

@@ -12,8 +12,6 @@ const MOST_RAD: f64 = 5e-5;
 /// The median of a squared standard deviation that is normal, and by how much such a median scatters more than a mean.
 const MEDIAN: f64 = 0.454_94;
 const MEDIAN_SCATTER: f64 = 1.65;
-/// A square sum this many of its standard deviations too large is more than chance.
-const MORE_THAN_CHANCE: f64 = 2.0;
 /// Scatter and fit come to rest after finding each from the other so often.
 const FINDINGS: usize = 3;
 /// Halvings of the range.
@@ -29,22 +27,25 @@ pub(crate) enum Over {
 }
 
 impl Over {
-    fn of(self, squares: &mut [f64]) -> f64 {
+    /// Of squares and their weights: that number, and one standard deviation of it.
+    fn of(self, squares: &mut [[f64; 2]]) -> [f64; 2] {
         match self {
-            Self::Mean => squares.iter().sum::<f64>() / squares.len() as f64,
+            Self::Mean => {
+                let sum = |of: fn(&[f64; 2]) -> f64| squares.iter().map(of).sum::<f64>();
+                let weight = sum(|[_, weight]| *weight);
+                let mean = sum(|[square, weight]| square * weight) / weight;
+                [
+                    mean,
+                    (2.0 * sum(|[_, weight]| weight * weight)).sqrt() / weight,
+                ]
+            }
             Self::Median => {
                 let middle = squares.len() / 2;
-                *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN
+                let chance = MEDIAN_SCATTER * (2.0 / squares.len() as f64).sqrt();
+                let by_square = |a: &[f64; 2], b: &[f64; 2]| a[0].total_cmp(&b[0]);
+                let [median, _] = *squares.select_nth_unstable_by(middle, by_square).1;
+                [median / MEDIAN, chance]
             }
-        }
-    }
-
-    /// One standard deviation of it, over so many rows.
-    fn chance(self, rows: f64) -> f64 {
-        let mean = (2.0 / rows).sqrt();
-        match self {
-            Self::Mean => mean,
-            Self::Median => MEDIAN_SCATTER * mean,
         }
     }
 }
@@ -67,7 +68,9 @@ impl State {
         Ok((factor, steps))
     }
 
-    /// Makes the noise of the encoders what it has to be for the misses of the visits in the fit, but no less than what was said.
+    /// Makes the noise of the encoders what it has to be for the misses of the visits in the fit, but no less than what was said. Where
+    /// the square sum is n of its standard deviations too large, 1 - 1 / n^2 of that is put down to scatter and the rest to chance: else
+    /// every second machine without scatter would be told to have some, while one that has much has all of it.
     pub(crate) fn find_scatter(
         &mut self,
         visits: &[Visit],
@@ -94,26 +97,34 @@ impl State {
         if rows_left < 1.0 {
             return Ok(());
         }
-        let mut list = vec![0.0; squares.len()];
-        let mut chi2 = |encoder_rad: f64| {
+        let mut list = vec![[0.0; 2]; squares.len()];
+        let mut excess = |encoder_rad: f64| {
             for (place, [miss, noise, by_encoders]) in list.iter_mut().zip(&squares) {
-                *place = miss / (noise + encoder_rad * encoder_rad * by_encoders);
+                let size = noise + encoder_rad * encoder_rad * by_encoders;
+                // Rows tell of scatter by how much of their noise it would be.
+                *place = [miss / size, by_encoders / size];
             }
-            over.of(&mut list) * rows / rows_left
+            let [chi2, chance] = over.of(&mut list);
+            let share = rows / rows_left;
+            [chi2 * share - 1.0, chance * share.sqrt()]
         };
-        let (mut low, mut high) = (said_rad, MOST_RAD);
-        if chi2(said_rad) <= 1.0 + MORE_THAN_CHANCE * over.chance(rows_left) {
-            high = said_rad;
+        let [excess_of_noise, chance] = excess(said_rad);
+        if excess_of_noise <= chance {
+            self.instrument.noise.encoder_rad = said_rad;
+            return Ok(());
         }
+        let (mut low, mut high) = (said_rad, MOST_RAD);
         for _ in 0..HALVINGS {
             let middle = low.midpoint(high);
-            if chi2(middle) > 1.0 {
+            if excess(middle)[0] > 0.0 {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        self.instrument.noise.encoder_rad = high;
+        let of_scatter = 1.0 - (chance / excess_of_noise).powi(2);
+        let scatter_rad = (of_scatter * (high * high - said_rad * said_rad)).sqrt();
+        self.instrument.noise.encoder_rad = said_rad.hypot(scatter_rad);
         Ok(())
     }
 }
