@@ -62,16 +62,13 @@ impl Line {
         };
         // Ends a line that somebody left unfinished.
         line.port.write_all(b"\n")?;
-        line.wait_for_silence()?;
-        let mut meetings = 1;
-        while !line.meet()? {
-            if meetings == MEETINGS {
-                return Err(line.no_controller());
-            }
-            meetings += 1;
+        for _ in 0..MEETINGS {
             line.wait_for_silence()?;
+            if line.meet()? {
+                return Ok(line);
+            }
         }
-        Ok(line)
+        Err(line.no_controller())
     }
 
     /// Asks who is there; whether that is what it answers, and nothing else comes. A slow controller may still answer what
