@@ -118,6 +118,29 @@ impl Chain {
         drives + self.load.at_rings(place)
     }
 
+    /// The same with a transmission that gives way and damps so much more, over what it does: play that is crossed gives way as well, and flanks
+    /// that meet lose what they had.
+    #[must_use]
+    pub fn with_play(&self, gives: f64, damps: f64) -> Self {
+        Self {
+            stiffness: self.stiffness / (1.0 + gives),
+            damping: self.damping * (1.0 + damps),
+            ..*self
+        }
+    }
+
+    /// The same with all springs so many times as stiff, and dampers so many times as strong. Resonances go with the root of the first.
+    #[must_use]
+    pub fn scaled(&self, springs: f64, dampers: f64) -> Self {
+        Self {
+            stiffness: springs * self.stiffness,
+            damping: dampers * self.damping,
+            guide_stiffness: springs * self.guide_stiffness,
+            guide_damping: dampers * self.guide_damping,
+            ..*self
+        }
+    }
+
     /// Rate of a motor that gives a torque while its ring turns at a rate: the transmission winds up between them. `None` beside the
     /// frequency at which the motor swings on the transmission by itself, where it does not follow.
     #[must_use]

@@ -23,9 +23,9 @@
 //!
 //! 1. [`winding()`]: is everything wired as it should be.
 //! 2. [`friction()`]: motor constants to some tenths of a per cent, friction; takes the resistance, roughly.
-//! 3. [`frequency_response()`] in the middle of the disk, turning without end; [`drive_model()`]: takes the motor constants.
+//! 3. [`frequency_response()`] in the middle of the disk, turning without end, and with a weaker excitation; [`drive_model()`]: takes the motor constants.
 //! 4. [`platform()`]: a tour that goes out; mass, inertia and load apart from the rings'.
-//! 5. [`tuning::tune()`] with the model at several places; [`frequency_response()`] again in closed loop, and
+//! 5. [`tuning::tune()`] with the model at several places, and off by what it may be; [`frequency_response()`] again in closed loop, and
 //!    [`tuning::Plant::from_lines`] to see that the margins are kept.
 //!
 //! What no record of volts, currents and ring angles tells: how a ring's inertia is split between motor and ring but for what the resonances say of it; the meters'

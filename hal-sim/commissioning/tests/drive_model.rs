@@ -11,7 +11,7 @@ use machine::{PLAN, unknown};
 
 /// Of some of the machines of `cargo bench -p commissioning`: its worst figure over 20 and a tenth more, in the order of [`NAMES`].
 const WORST: [f64; 13] = [
-    0.0152, 0.0033, 0.0087, 0.0127, 0.0137, 0.026, 0.0281, 0.0643, 0.029, 0.107, 0.0097, 0.0068,
+    0.0152, 0.0033, 0.0087, 0.011, 0.0137, 0.026, 0.0281, 0.0643, 0.0142, 0.0618, 0.0075, 0.0068,
     0.015,
 ];
 
@@ -28,8 +28,12 @@ fn unknown_machines_are_identified() {
             println!("{seed} {name}: {:+.2} %", 100.0 * error);
             assert!(error.abs() < worst, "{seed} {name}: {error}");
         }
-        // What is not known of the split between motor and ring is said.
         let mechanical = &found.model.mechanical;
+        assert!(
+            mechanical.excited.stiffness < mechanical.chain.stiffness,
+            "play makes a transmission softer"
+        );
+        // What is not known of the split between motor and ring is said.
         assert!(mechanical.drive_inertia_deviation < mechanical.deviations[1]);
         assert!(
             found

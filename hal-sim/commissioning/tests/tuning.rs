@@ -4,7 +4,8 @@
 use commissioning::chain::Place;
 use commissioning::record::Timing;
 use commissioning::tuning::{
-    Gains, Limits, Margins, PivotGains, Plant, margins, sensitivity, tune,
+    Gains, Limits, MOST_MS, Margins, PLACES, PivotGains, Plant, SEARCHED, margins, sensitivity,
+    tune,
 };
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::{self, Parameters};
@@ -239,6 +240,37 @@ fn tuned_gains_give_the_margins_that_were_promised() {
         "{}",
         tuned.margins.rejection
     );
+}
+
+/// Gains for a model whose springs may be off keep their margins where they are, those for the model as it stands do not.
+#[test]
+fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
+    let stage = hal_sim::machine::unknown(24);
+    let (chain, electrical) = loop_model(&stage);
+    let places = &PLACES[..SEARCHED];
+    let at_worst = |plants: &[Plant]| {
+        let tuned = tune(
+            plants,
+            &electrical,
+            &chain.resonances_hz(&Place::centre()),
+            chain.inertia(&Place::centre())[(0, 0)],
+            &TIMING,
+            &Limits::WITH_FRICTION,
+        )
+        .expect("there are gains");
+        let off = [0.95, 0.97, 0.99, 1.01, 1.03, 1.05].map(|springs| {
+            let off = Plant::at_places(&electrical, &chain.scaled(springs, 0.7), places, &TIMING);
+            let all = (off.iter()).map(|plant| margins(plant, &tuned.gains, TIMING.tick_s));
+            let worst = all.reduce(Margins::worse).expect("a plant");
+            assert!(worst.is_stable);
+            worst.ms
+        });
+        off.into_iter().fold(0.0, f64::max)
+    };
+    let certain = at_worst(&Plant::at_places(&electrical, &chain, places, &TIMING));
+    let uncertain = at_worst(&Plant::of_uncertain(&electrical, &chain, places, &TIMING));
+    println!("Ms for the model as it stands {certain:.2}, as it may be {uncertain:.2}");
+    assert!(uncertain < MOST_MS && certain > MOST_MS);
 }
 
 impl Compared {

@@ -69,7 +69,7 @@ fn with_gains(parameters: &Parameters, gains: &Gains) -> Parameters {
 }
 
 /// The same with the gains and filters that reject most at 30 Hz and keep an Ms of 1.9, and of 2 at the rim, by the true machine's mathematics: what the
-/// step `tuning` of a commissioning finds, with nothing measured wrong.
+/// step `tuning` of a commissioning would find with nothing measured wrong, no doubt of its model, and no friction that holds the stage off.
 #[must_use]
 pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Parameters {
     let model = loop_model(stage);

@@ -22,9 +22,8 @@ const MOST_CONSTANT_ERROR_AGAIN: f64 = 0.006;
 /// And of friction, measured again.
 const MOST_FRICTION_ERROR_AGAIN: f64 = 0.0096;
 
-/// And of the gears' cyclic errors; and what is left of the following error with them made up for.
+/// And of the gears' cyclic errors.
 const MOST_GEAR_ERROR: f64 = 0.03;
-const MOST_LEFT_OF_GEARS: f64 = 0.5;
 
 /// And of zeros by forces, mrad.
 const MOST_ZERO_ERROR_MRAD: f64 = 3.7;
@@ -87,15 +86,19 @@ struct Most {
     seconds: f64,
     /// What is left of the encoders' errors within the periods of their scales: the worst of what was measured here, and a tenth more.
     left_within_periods_urad: f64,
+    /// And of the following error with gears made up for, over that without. What else there is of it goes with the loop's gains.
+    left_of_gears: f64,
 }
 
 const WITH_JIG: Most = Most {
     seconds: 300.0,
     left_within_periods_urad: 0.0111,
+    left_of_gears: 0.573,
 };
 const WITHOUT_JIG: Most = Most {
     seconds: 420.0,
     left_within_periods_urad: 0.0187,
+    left_of_gears: 0.282,
 };
 
 #[test]
@@ -125,7 +128,7 @@ fn brings_up(seed: u64, how: &[&str], most: &Most) -> PathBuf {
     finds_the_motors(&machine, &told, [MOST_CONSTANT_ERROR, MOST_FRICTION_ERROR]);
     finds_errors_within_periods(&machine, &told, most.left_within_periods_urad);
     finds_what_is_moved(&machine, &told);
-    finds_the_gears(&machine, &told);
+    finds_the_gears(&machine, &told, most.left_of_gears);
     finds_the_guides(&machine, &told);
     finds_gains(&told);
     ends_in_time(&told, most.seconds);
@@ -268,7 +271,7 @@ fn finds_what_is_moved(machine: &StageParameters, told: &str) {
 }
 
 /// Amplitudes, and what making up for them leaves of the following error while the platform turns, over what there was.
-fn finds_the_gears(machine: &StageParameters, told: &str) {
+fn finds_the_gears(machine: &StageParameters, told: &str, most_left: f64) {
     let truth_urad = 1e6 * machine.plant.gear.cyclic_error_rad;
     for pivot in 1..=3 {
         let name = format!("gear of pivot {pivot}, once a turn of its motor");
@@ -279,7 +282,7 @@ fn finds_the_gears(machine: &StageParameters, told: &str) {
     let name = "largest following error of the turning pivots with that made up for";
     let errors: Vec<f64> = numbers(told, name).collect();
     println!("{errors:?} urad");
-    assert!(errors[0] < MOST_LEFT_OF_GEARS * errors[1], "{told}");
+    assert!(errors[0] < most_left * errors[1], "{told}");
 }
 
 /// Figures of the machines tried here, and a tenth more; 15 % is what is asked for.

@@ -3,6 +3,10 @@
 //! Torque is current times motor constant, so neither winding nor bridge matters here. The model is the chain of motors, rings and platform
 //! ([`crate::chain`]) in the middle of the disk, where turning does not change it; it follows all nine responses at all lines at once.
 //!
+//! Play in the gears gives way where it is crossed, by the same angle whatever the torque: it adds to what the transmission's springs give way, the
+//! more the weaker the excitation is. So there are two, and the machine is told without its play: as it answers where something bears on
+//! the gears.
+//!
 //! What cannot be told apart at one place: rings and platform below the guides' resonance. There only `J + m R^2 / 1.5` and `J + I / 3` are
 //! seen, J being a motor and its ring; mass, inertia and J follow apart as far as the platform stays behind above it. Motor and
 //! ring follow apart by the two resonances only. So the guess counts too, as one that may be off by [`Guess::SPREAD`]; what is
@@ -40,11 +44,24 @@ impl Guess {
     pub const SPREAD: f64 = 0.7;
 }
 
+/// Lines in the middle of the disk, and those of an excitation that is weaker.
+#[derive(Clone, Copy, Debug)]
+pub struct Responses<'a> {
+    /// Of the excitation.
+    pub lines: &'a [Line],
+    /// Of the weaker one.
+    pub weaker: &'a [Line],
+    /// How many times as strong the first is.
+    pub times: f64,
+}
+
 /// The mechanics as found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanical {
-    /// Numbers.
+    /// Numbers, without play.
     pub chain: Chain,
+    /// The same as they answered to the excitation: softer by its play.
+    pub excited: Chain,
     /// Standard deviations, over themselves, in the order of [`NAMES`]; those of the last two are in kg m^2.
     pub deviations: Vec<f64>,
     /// What is left of the responses, over them: root of the mean square over lines and entries.
@@ -70,8 +87,11 @@ pub const NAMES: [&str; 13] = [
     "moment y",
 ];
 
-/// What the model leaves out, over a response: little where all moves as one, and more by the frequency, since play in the gears softens the
-/// transmission where it swings.
+/// What play gives way under the excitation, over the transmission's springs, and what it damps, over its dampers: as likely as not.
+const PLAY_GIVES: f64 = 0.2;
+const PLAY_DAMPS: f64 = 1.0;
+/// What the model leaves out, over a response: little where all moves as one, and more by the frequency and the weaker the excitation, since play
+/// is no spring.
 const MODEL_ERROR: f64 = 0.01;
 const GROWS_FROM_HZ: f64 = 300.0;
 /// More of what is left is no fit.
@@ -85,24 +105,30 @@ const STEPS: usize = 60;
 
 struct Measured {
     hz: f64,
+    /// What play gives way and damps, over what it does under the excitation.
+    play: f64,
     response: Matrix3<Complex<f64>>,
     deviation: Matrix3<f64>,
 }
 
-/// The mechanics, from lines up to `to_hz` measured in the middle of the disk.
+/// The mechanics, from lines up to `to_hz`.
 ///
 /// # Errors
 /// [`DriveError::NoFit`].
 pub fn mechanical(
-    lines: &[Line],
+    responses: &Responses<'_>,
     drives: &[Electrical; 3],
     guess: &Guess,
     to_hz: f64,
 ) -> Result<Mechanical, DriveError> {
     let place = Place::centre();
-    let measured: Vec<_> = (lines.iter().filter(|line| line.hz <= to_hz))
-        .map(|line| by_torque(line, drives))
-        .collect();
+    let of = |lines: &[Line], play: f64| -> Vec<Measured> {
+        (lines.iter().filter(|line| line.hz <= to_hz))
+            .map(|line| by_torque(line, drives, play))
+            .collect()
+    };
+    let mut measured = of(responses.lines, 1.0);
+    measured.extend(of(responses.weaker, responses.times));
     let prior = to_unknowns(&guess.0);
     let residuals = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured, &place);
     let mut starts: Vec<_> = (TRANSMISSIONS.iter())
@@ -123,7 +149,7 @@ pub fn mechanical(
     Ok(found)
 }
 
-fn by_torque(line: &Line, drives: &[Electrical; 3]) -> Measured {
+fn by_torque(line: &Line, drives: &[Electrical; 3], play: f64) -> Measured {
     let (mut response, mut deviation) =
         (line.angle_by_current(), line.angle_by_current_deviation());
     for (i, drive) in drives.iter().enumerate() {
@@ -133,13 +159,14 @@ fn by_torque(line: &Line, drives: &[Electrical; 3]) -> Measured {
             .scale_mut(1.0 / drive.motor_constant);
     }
     let size = response.norm() / 3.0;
-    let share = MODEL_ERROR * (1.0 + (line.hz / GROWS_FROM_HZ).powi(2)).sqrt();
+    let share = play * MODEL_ERROR * (1.0 + (line.hz / GROWS_FROM_HZ).powi(2)).sqrt();
     for (deviation, response) in deviation.iter_mut().zip(response.iter()) {
         let left_out = share * response.norm().hypot(size);
         *deviation = deviation.hypot(left_out);
     }
     Measured {
         hz: line.hz,
+        play,
         response,
         deviation,
     }
@@ -201,11 +228,12 @@ fn to_unknowns(chain: &Chain) -> DVector<f64> {
         load.inertia,
     ];
     DVector::from_iterator(
-        13,
+        15,
         positive
             .map(f64::ln)
             .into_iter()
-            .chain(load.moment.map(|moment| moment / MOMENT)),
+            .chain(load.moment.map(|moment| moment / MOMENT))
+            .chain([0.0; 2]),
     )
 }
 
@@ -229,6 +257,16 @@ fn from_unknowns(unknowns: &DVector<f64>) -> Chain {
     }
 }
 
+/// What play gives way and damps under the excitation, over what the transmission does.
+fn play(unknowns: &DVector<f64>) -> [f64; 2] {
+    [PLAY_GIVES * unknowns[13], PLAY_DAMPS * unknowns[14]].map(|more| f64::max(0.0, more))
+}
+
+fn excited(chain: &Chain, play: [f64; 2], times: f64) -> Chain {
+    let [gives, damps] = play.map(|more| times * more);
+    chain.with_play(gives, damps)
+}
+
 fn residuals(
     unknowns: &DVector<f64>,
     prior: &DVector<f64>,
@@ -238,24 +276,28 @@ fn residuals(
     let chain = from_unknowns(unknowns);
     let mut all = Vec::with_capacity(18 * measured.len() + unknowns.len());
     for line in measured {
-        let model = chain.compliance(line.hz, place).ring;
+        let excited = excited(&chain, play(unknowns), line.play);
+        let model = excited.compliance(line.hz, place).ring;
         for k in 0..9 {
             let off = (line.response[k] - model[k]) / line.deviation[k];
             all.extend([off.re, off.im]);
         }
     }
     all.extend((0..11).map(|k| (unknowns[k] - prior[k]) / Guess::SPREAD));
-    all.extend([11, 12].map(|k| unknowns[k]));
+    all.extend([11, 12, 13, 14].map(|k| unknowns[k]));
     DVector::from_vec(all)
 }
 
 fn from_minimum(minimum: &Minimum, measured: &[Measured], place: &Place) -> Mechanical {
-    let chain = from_unknowns(&minimum.at);
-    let mut left = 0.0;
-    for line in measured {
-        let off = line.response - chain.compliance(line.hz, place).ring;
-        left += off.norm_squared() / line.response.norm_squared();
-    }
+    let (chain, play) = (from_unknowns(&minimum.at), play(&minimum.at));
+    let excited = excited(&chain, play, 1.0);
+    let of_excited = || measured.iter().filter(|line| line.play <= 1.0);
+    let left: f64 = of_excited()
+        .map(|line| {
+            let off = line.response - excited.compliance(line.hz, place).ring;
+            off.norm_squared() / line.response.norm_squared()
+        })
+        .sum();
     // Residuals are larger than what deviations say by what the model does not know.
     let grown = (minimum.cost / (18.0 * measured.len() as f64)).max(1.0);
     let covariance = &minimum.covariance * grown;
@@ -266,10 +308,11 @@ fn from_minimum(minimum: &Minimum, measured: &[Measured], place: &Place) -> Mech
         + 2.0 * motor * ring * covariance[(0, 1)];
     Mechanical {
         chain,
+        excited,
         deviations: (0..13)
             .map(|k| variance(k).sqrt() * if k < 11 { 1.0 } else { MOMENT })
             .collect(),
-        residual: f64::sqrt(left / measured.len() as f64),
+        residual: f64::sqrt(left / of_excited().count() as f64),
         drive_inertia_deviation: sum.max(0.0).sqrt() / (motor + ring),
     }
 }

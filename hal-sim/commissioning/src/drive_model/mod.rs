@@ -11,9 +11,9 @@ mod electrical;
 mod mechanical;
 
 pub use electrical::{Besides, Electrical, Equations, electrical};
-pub use mechanical::{Guess, Mechanical, NAMES, mechanical};
+pub use mechanical::{Guess, Mechanical, NAMES, Responses, mechanical};
 
-use crate::frequency_response::{Line, Run};
+use crate::frequency_response::Run;
 use crate::record::Timing;
 
 /// Electrical and mechanical numbers of the machine.
@@ -41,13 +41,13 @@ pub struct Known {
 /// Passes in which windings and mechanics are found in turn: each takes something of the other.
 const PASSES: usize = 4;
 
-/// The model, from runs in the middle of the disk and the lines that follow from them.
+/// The model, from runs in the middle of the disk, the lines that follow from them, and lines of a weaker excitation.
 ///
 /// # Errors
 /// [`DriveError`].
 pub fn drive_model(
     runs: &[Run],
-    lines: &[Line],
+    responses: &Responses<'_>,
     timing: &Timing,
     known: &Known,
 ) -> Result<DriveModel, DriveError> {
@@ -57,7 +57,7 @@ pub fn drive_model(
         let one = |pivot: usize| {
             let mechanics = mechanics.map(|model| {
                 (
-                    &model.mechanical.chain,
+                    &model.mechanical.excited,
                     model.electrical[pivot].motor_constant,
                 )
             });
@@ -74,7 +74,7 @@ pub fn drive_model(
         Ok([one(0)?, one(1)?, one(2)?])
     };
     let with = |electrical: [Electrical; 3]| {
-        let mechanical = mechanical(lines, &electrical, &known.guess, known.to_hz)?;
+        let mechanical = mechanical(responses, &electrical, &known.guess, known.to_hz)?;
         Ok(DriveModel {
             electrical,
             mechanical,

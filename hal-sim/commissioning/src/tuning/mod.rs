@@ -39,6 +39,8 @@ pub struct Limits {
     pub resonance_peak: f64,
     /// Share of the velocity gain that would just keep them.
     pub share: f64,
+    /// What a tail costs, over what rejection is worth: a position gain or a corner of the integral that is low, by its logarithm.
+    pub tail: f64,
 }
 
 impl Limits {
@@ -47,6 +49,7 @@ impl Limits {
         ms: 1.9,
         resonance_peak: 0.5,
         share: 1.0,
+        tail: 0.0,
     };
 
     /// What is sought on a model of the machine: a little less than what is asked of its loops. A resonance may be high where its phase is
@@ -55,6 +58,13 @@ impl Limits {
         ms: 1.9,
         resonance_peak: 10.0,
         share: 1.0,
+        tail: 0.0,
+    };
+
+    /// The same of a machine whose guides have friction, which holds it off where a tail is slow: some rejection is given for a faster one.
+    pub const WITH_FRICTION: Self = Self {
+        tail: 0.2,
+        ..Self::ON_MODEL
     };
 }
 
@@ -83,8 +93,9 @@ pub enum TuningError {
 /// Ranges that are searched, inside those of the parameters.
 const VELOCITY: [f64; 2] = [3.0, 500.0];
 /// Position gain and corner of the integral, 1/s, which do the same: a lower one of either hardly costs rejection at 30 Hz, and leaves a tail of
-/// tens of milliseconds after every move.
+/// tens of milliseconds after every move, or one that never ends, where friction holds. What is under the second number may cost ([`Limits::tail`]).
 const CORNER: [f64; 2] = [60.0, 2_000.0];
+const TAIL_UNDER: f64 = 150.0;
 const LEAD_TO_HZ: f64 = 3_000.0;
 /// Frequency of a notch, Hz, its width over that, and its gain.
 const NOTCH_HZ: [f64; 2] = [10.0, 9_000.0];
@@ -292,12 +303,21 @@ impl Search<'_> {
         let velocity = unknowns[unknowns.len() - 1]
             .exp()
             .clamp(VELOCITY[0], VELOCITY[1]);
-        let margins = self.margins(&self.gains(&shape_of(unknowns), velocity));
+        let gains = self.gains(&shape_of(unknowns), velocity);
+        let margins = self.margins(&gains);
         if !margins.is_stable {
             return UNSTABLE;
         }
         let over = |value: f64, limit: f64| f64::max(0.0, (value / limit).ln());
+        let parameters::Gains {
+            velocity_v_s_rad,
+            position_1_s,
+            integral_v_rad,
+        } = gains.pivots[0].gains;
+        let corners = [position_1_s, integral_v_rad / velocity_v_s_rad];
+        let tails: f64 = corners.map(|corner| over(TAIL_UNDER, corner)).iter().sum();
         margins.rejection.ln()
+            + self.limits.tail * tails
             + outside(&shape_of(unknowns))
             + PENALTY
                 * (over(margins.ms, self.limits.ms)

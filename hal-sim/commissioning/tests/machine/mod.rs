@@ -153,6 +153,9 @@ pub const PLAN: Plan = Plan {
     to_hz: 3_000.0,
 };
 
+/// How many times as strong an excitation is as the weaker one.
+pub const WEAKER: f64 = 2.5;
+
 pub struct Excited {
     pub runs: Vec<Run>,
     pub machine: Machine,

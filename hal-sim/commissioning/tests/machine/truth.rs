@@ -1,9 +1,9 @@
 //! What a machine is, from the simulator's own numbers and matrices, against what was found.
 
 use super::steady::all_rates;
-use super::{Excited, Machine, PLAN, Plan, TIMING, excite};
+use super::{Excited, Machine, PLAN, Plan, TIMING, WEAKER, excite};
 use commissioning::chain::Place;
-use commissioning::drive_model::{DriveModel, Guess, Known, drive_model};
+use commissioning::drive_model::{DriveModel, Guess, Known, Responses, drive_model};
 use commissioning::frequency_response::{Line, frequency_response};
 use commissioning::friction::friction;
 use hal_sim::machine::devices::StageParameters;
@@ -42,7 +42,18 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
     };
     let excited = excite(parameters, plan);
     let lines = frequency_response(&excited.runs, &TIMING).expect("there are responses");
-    let model = drive_model(&excited.runs, &lines, &TIMING, &known).expect("there is a model");
+    let weaker = Plan {
+        rms_v: plan.rms_v / WEAKER,
+        ..*plan
+    };
+    let weaker = excite(parameters, &weaker);
+    let weaker = frequency_response(&weaker.runs, &TIMING).expect("there are responses");
+    let responses = Responses {
+        lines: &lines,
+        weaker: &weaker,
+        times: WEAKER,
+    };
+    let model = drive_model(&excited.runs, &responses, &TIMING, &known).expect("there is a model");
     Identified {
         excited,
         lines,

@@ -36,7 +36,7 @@ impl MeasuredLoop {
         spot: Spot,
         model: &DriveModel,
     ) -> Result<Self, CommissionError> {
-        let excited = excite(bench, &spot, SETS, Recorded::Loop)?;
+        let excited = excite(bench, &spot, (SETS, PEAK_V), Recorded::Loop)?;
         Ok(Self::new(&excited, spot, model))
     }
 
@@ -45,8 +45,8 @@ impl MeasuredLoop {
         let lines = closed_loop(
             &excited.runs,
             &excited.lines,
-            PEAK_V,
-            (&model.electrical, &model.mechanical.chain),
+            excited.peak_v,
+            (&model.electrical, &model.mechanical.excited),
             &Timing::STAGE,
         );
         Self { spot, lines }

@@ -10,6 +10,8 @@ use firmware::control::excitation::{PERIOD_TICKS, line_harmonics};
 
 /// Peak of an excitation, V: its root mean square is a third of it, some times what the dead time takes.
 pub const PEAK_V: f64 = 8.0;
+/// How many times as strong that is as a weaker excitation, which shows what play in the gears does.
+pub const WEAKER: f64 = 2.5;
 /// Ticks from row to row, and rows of a period.
 const TICKS_PER_ROW: usize = 4;
 const PERIOD_ROWS: usize = PERIOD_TICKS as usize / TICKS_PER_ROW;
@@ -61,6 +63,7 @@ impl Spot {
 /// What was recorded at a spot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excited {
+    pub peak_v: f64,
     pub runs: Vec<Run>,
     pub lines: Vec<Line>,
 }
@@ -97,11 +100,11 @@ impl Recorded {
     }
 }
 
-/// Excites each motor with so many sets of lines, which lie between each other's, and records all pivots.
+/// Excites each motor with so many sets of lines of a peak, which lie between each other's, and records all pivots.
 pub fn excite(
     bench: &mut Bench<'_>,
     spot: &Spot,
-    sets: u32,
+    (sets, peak_v): (u32, f64),
     recorded: Recorded,
 ) -> Result<Excited, CommissionError> {
     bench.reserve(recorded.rows())?;
@@ -115,7 +118,7 @@ pub fn excite(
         let mut experiments: [Vec<Record>; AXES] = Default::default();
         for (drive, records) in experiments.iter_mut().enumerate() {
             let line = format!(
-                "EXC SINES {} {PEAK_V} {} {lowest} {highest} {LINES}",
+                "EXC SINES {} {peak_v} {} {lowest} {highest} {LINES}",
                 drive + 1,
                 (1e3 * bench.period_s * (recorded.rows() * TICKS_PER_ROW) as f64).ceil()
             );
@@ -139,7 +142,11 @@ pub fn excite(
     bench.ask("MOV X 0 Y 0 W 0")?;
     bench.wait_for_target(LONGEST_BACK_S)?;
     match frequency_response(&runs, &Timing::STAGE) {
-        Ok(lines) => Ok(Excited { runs, lines }),
+        Ok(lines) => Ok(Excited {
+            peak_v,
+            runs,
+            lines,
+        }),
         Err(error) => fail(
             format!("{}: {error}", spot.words()),
             "the voltage of the excitation, and what the motors do with it",

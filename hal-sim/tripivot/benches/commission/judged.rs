@@ -126,13 +126,13 @@ fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
     let (plant, analog) = (&machine.plant, &machine.analog);
     let constant = plant.ring_torque_constant_n_m_a() * analog.supply_gain;
     let (chain, _) = loop_model(machine);
-    let inertia = chain.inertia(&Place::centre())[(0, 0)] * torque(machine);
-    let pivots = |of: &dyn Fn(usize, f64, f64) -> f64| {
+    let inertia = chain.inertia(&Place::centre()) * torque(machine);
+    let pivots = |of: &dyn Fn(usize, f64, f64, f64) -> f64| {
         worst((0..3).map(|pivot| {
             let (ring, bridge) = ring_and_bridge(machine, pivot);
             let ohm = analog.supply_gain / analog.current_gain[bridge];
             let warm = 1.0 + plant.winding.resistance_per_k * warmth.noted.get()[ring];
-            of(pivot + 1, ohm, warm)
+            of(pivot + 1, ohm, warm, inertia[(ring, ring)])
         }))
     };
     let of = |name: String, unit: &str| number(all, "identification", &name, unit);
@@ -151,7 +151,7 @@ fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
     vec![
         (
             "R J / K",
-            pivots(&|pivot, ohm, warm| {
+            pivots(&|pivot, ohm, warm, inertia| {
                 let found = of(format!("pivot {pivot}: R J / K"), "V s^2/rad");
                 percent(
                     found,
@@ -161,25 +161,25 @@ fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
         ),
         (
             "K",
-            pivots(&|pivot, _, _| percent(constant_of(pivot), constant)),
+            pivots(&|pivot, _, _, _| percent(constant_of(pivot), constant)),
         ),
         (
             "R",
-            pivots(&|pivot, ohm, _| {
+            pivots(&|pivot, ohm, _, _| {
                 let found = of(format!("winding of pivot {pivot}"), "ohm");
                 percent(found, ohm * plant.resistance_ohm)
             }),
         ),
         (
             "R warm",
-            pivots(&|pivot, ohm, warm| {
+            pivots(&|pivot, ohm, warm, _| {
                 let found = of(format!("winding of pivot {pivot}"), "ohm");
                 percent(found, ohm * warm * plant.resistance_ohm)
             }),
         ),
         (
             "L",
-            pivots(&|pivot, ohm, _| {
+            pivots(&|pivot, ohm, _, _| {
                 let found = of(format!("winding of pivot {pivot}"), "mH");
                 percent(found, ohm * plant.inductance_h * 1e3)
             }),

@@ -74,14 +74,14 @@ pub(super) fn begin_softly(bench: &mut Bench<'_>) -> Result<(), CommissionError>
     set(bench, FIRST_SHARE)
 }
 
-/// What counts as settled is what it will be from now on.
-pub(super) fn settle_as_usual(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
-    Ok(bench.set(&[(id::SETTLING_COUNTS, USUAL_COUNTS)])?)
+/// What counts as settled from now on, encoder counts.
+pub(super) fn settle_within(bench: &mut Bench<'_>, counts: f64) -> Result<(), CommissionError> {
+    Ok(bench.set(&[(id::SETTLING_COUNTS, counts)])?)
 }
 
 /// What counts as settled for loops that are not tuned yet.
 pub(in crate::commission) fn settle_widely(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
-    Ok(bench.set(&[(id::SETTLING_COUNTS, WIDE_COUNTS)])?)
+    settle_within(bench, WIDE_COUNTS)
 }
 
 fn at_rest(share: f64) -> f64 {

@@ -5,9 +5,11 @@ use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
-use crate::commission::sines::{CENTRE, PEAK_V, Recorded, excite};
+use crate::commission::sines::{CENTRE, PEAK_V, Recorded, WEAKER, excite};
 use commissioning::chain::{Chain, Place};
-use commissioning::drive_model::{DriveModel, Guess, Known as Before, Mechanical, drive_model};
+use commissioning::drive_model::{
+    DriveModel, Guess, Known as Before, Mechanical, Responses, drive_model,
+};
 use commissioning::frequency_response::Line;
 use commissioning::record::Timing;
 
@@ -16,6 +18,7 @@ const SETS: u32 = 3;
 const PERIODS: usize = 3;
 const SETS_OF_LOAD: u32 = 2;
 const PERIODS_OF_LOAD: usize = 2;
+const SETS_OF_WEAKER: u32 = 2;
 /// Lines that the model follows, Hz.
 const TO_HZ: f64 = 2_300.0;
 /// Least share of what an encoder shows that answers to its own drive, up to a frequency.
@@ -42,7 +45,9 @@ pub(super) fn run(
     } else {
         (SETS, PERIODS)
     };
-    let excited = excite(bench, &CENTRE, sets, Recorded::Drives { periods })?;
+    let excited = excite(bench, &CENTRE, (sets, PEAK_V), Recorded::Drives { periods })?;
+    let weaker = (SETS_OF_WEAKER, PEAK_V / WEAKER);
+    let weaker = excite(bench, &CENTRE, weaker, Recorded::Loop)?;
     let quality = quality(&excited.lines);
     found.push(Finding::new(
         format!("share of the angles that answers to the drive, up to {QUALITY_TO_HZ:.0} Hz"),
@@ -57,7 +62,12 @@ pub(super) fn run(
         guess: Guess::STAGE,
         to_hz: TO_HZ,
     };
-    let model = match drive_model(&excited.runs, &excited.lines, &Timing::STAGE, &before) {
+    let responses = Responses {
+        lines: &excited.lines,
+        weaker: &weaker.lines,
+        times: WEAKER,
+    };
+    let model = match drive_model(&excited.runs, &responses, &Timing::STAGE, &before) {
         Ok(model) => model,
         Err(error) => return fail(error.to_string(), RUBS),
     };
@@ -194,8 +204,13 @@ fn tell_platform(
         .map(|hz| format!("{hz:.0}"))
         .collect();
     found.push(Finding::told(
-        "resonances in the middle",
+        "resonances in the middle, where play in the gears is not crossed",
         format!("{} Hz", resonances.join(", ")),
+    ));
+    let softer = 1.0 - mechanical.excited.stiffness / chain.stiffness;
+    found.push(Finding::told(
+        "play in the gears, where these sines cross it",
+        format!("makes the transmission {:.0} % softer", 100.0 * softer),
     ));
     set_platform(bench, chain, radius_m)
 }

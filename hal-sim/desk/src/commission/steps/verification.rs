@@ -1,10 +1,9 @@
 //! Moves as the machine will make them, there and back.
 
-use super::gains::{USUAL_COUNTS, rest_for, settle_as_usual};
+use super::gains::{USUAL_COUNTS, rest_for, settle_within};
 use super::step_response::step_response;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
-use crate::commission::id;
 use crate::commission::known::Known;
 use crate::commission::servo_gains;
 
@@ -52,7 +51,7 @@ fn rounds(bench: &mut Bench<'_>, found: &mut Found) -> Result<[f64; 2], Commissi
                 window *= 2.0;
                 let told = format!("to {window:.0} encoder counts: {error}");
                 found.push(Finding::told("settling window is widened", told));
-                bench.set(&[(id::SETTLING_COUNTS, window)])?;
+                settle_within(bench, window)?;
             }
             followed => return followed,
         }
@@ -64,7 +63,7 @@ pub(super) fn run(
     _: &mut Known,
     found: &mut Found,
 ) -> Result<(), CommissionError> {
-    settle_as_usual(bench)?;
+    settle_within(bench, USUAL_COUNTS)?;
     // What the loop learns by itself it has learnt in the first.
     let [first_rad, error_rad] = rounds(bench, found)?;
     found.push(Finding::told(
