@@ -1,15 +1,20 @@
 //! The campaign of faults: it finds nothing wrong with the controller, and would if there were.
 
 use firmware::fault::FaultKind;
+use firmware::parameters::Parameters;
 use hal_sim::campaign::{
-    Campaign, End, Injection, MARGIN, Measure, NAMES, Outcome, Problem, Scenario, ToRest, replay,
-    run, table,
+    Campaign, Commissioned, CommissionedError, End, Injection, MARGIN, Measure, NAMES, Outcome,
+    Problem, SETTINGS, Scenario, ToRest, replay, run, table,
 };
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::machine::unknown;
+use hal_sim::rig::Told;
 
-const SHORT: Campaign = Campaign {
+const SHORT: Campaign<'_> = Campaign {
     runs: 12,
     seed: 9,
     jobs: 2,
+    machines: &[],
 };
 
 /// The first run of the campaign's kind in which this breaks and is noticed.
@@ -35,6 +40,47 @@ fn the_same_seed_gives_the_same_campaign_whatever_the_threads() {
     for name in NAMES {
         assert!(table.contains(name), "{name}:\n{table}");
     }
+}
+
+#[test]
+fn on_commissioned_machines_it_has_them_and_what_their_controllers_keep() {
+    let mut parameters = Told::Machine.parameters(&Parameters::REFERENCE, &unknown(7));
+    parameters.servo.gains[1].velocity_v_s_rad = 12.5;
+    let machines = [Commissioned {
+        machine: 7,
+        parameters: parameters.clone(),
+    }];
+    for seed in 0..20 {
+        let scenario = Scenario::on(seed, &machines);
+        let plant = &scenario.stage.plant;
+        assert_eq!(plant.platform_mass_kg, unknown(7).plant.platform_mass_kg);
+        assert_eq!(scenario.parameters.servo, parameters.servo);
+        assert_ne!(Scenario::new(seed).parameters.servo, parameters.servo);
+    }
+}
+
+#[test]
+fn a_folder_without_commissioned_machines_is_refused() {
+    let folder = std::env::temp_dir().join(format!("campaign-machines-{}", std::process::id()));
+    let of_machine = folder.join("3");
+    std::fs::create_dir_all(&of_machine).expect("a folder");
+    let found = Commissioned::all_of(&folder);
+    assert!(
+        matches!(found, Err(CommissionedError::NoMachine(_))),
+        "{found:?}"
+    );
+    drop(SettingsFlash::open(&of_machine.join(SETTINGS)).expect("an erased flash"));
+    let found = Commissioned::all_of(&folder);
+    assert!(
+        matches!(found, Err(CommissionedError::NotCommissioned(_))),
+        "{found:?}"
+    );
+    std::fs::remove_dir_all(&folder).expect("it is there");
+    let found = Commissioned::all_of(&folder);
+    assert!(
+        matches!(found, Err(CommissionedError::Folder { .. })),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -209,7 +255,7 @@ fn what_nobody_could_detect_is_told_from_what_nobody_has() {
     let undetected = |of: fn(&Injection) -> bool| {
         (1..)
             .filter(|seed| of(&Scenario::new(*seed).injection))
-            .map(|seed| replay(seed)[0].clone())
+            .map(|seed| replay(seed, &[])[0].clone())
             .find(|outcome| outcome.detected().is_none())
             .expect("one of so many")
     };

@@ -19,6 +19,7 @@
 //! | `injection`, `draw`, `apply`, `settings` | what breaks; how much; how the hardware does it |
 //! | `expected`, `effect`, `current`, `swings`, `excited` | what the controller has to say about it, and when that has passed its threshold |
 //! | `scenario`, `motion` | from a seed to a run; what the stage is told |
+//! | `commissioned` | machines with what a commissioning found of them, in place of what their builder knows |
 //! | `run`, `watch` | one run, and who looks on |
 //! | `outcome` | what came of a run |
 //! | `truth`, `rest` | what the machine really did |
@@ -31,6 +32,7 @@
 mod another_day;
 mod apply;
 mod bound;
+mod commissioned;
 mod current;
 mod draw;
 mod effect;
@@ -54,6 +56,7 @@ mod verdict;
 mod watch;
 
 pub use bound::MARGIN;
+pub use commissioned::{Commissioned, CommissionedError, SETTINGS};
 pub use effect::Effect;
 pub use expected::{Cause, Expected};
 pub use injection::{Injection, NAMES, Other};
@@ -74,17 +77,19 @@ use another_day::on_another_day;
 use inputs::Inputs;
 
 /// What a campaign is to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Campaign {
+#[derive(Clone, Copy, Debug)]
+pub struct Campaign<'a> {
     /// Runs with a fault; there are as many without.
     pub runs: u64,
     /// Seed of the runs' seeds.
     pub seed: u64,
     /// Threads.
     pub jobs: usize,
+    /// Machines to run it on; none: each run draws its own.
+    pub machines: &'a [Commissioned],
 }
 
-impl Campaign {
+impl Campaign<'_> {
     /// Runs it, as long as `goes_on` says so when it is told how many runs have been begun, from any thread. The outcomes are in
     /// the order of the runs, each with its control behind it, whatever the threads do.
     #[must_use]
@@ -103,7 +108,7 @@ impl Campaign {
                 if !goes_on(index) {
                     return done;
                 }
-                done.push((index, replay(seed)));
+                done.push((index, replay(seed, self.machines)));
             }
         };
         let mut outcomes: Vec<(u64, [Outcome; 2])> = thread::scope(|scope| {
@@ -117,10 +122,10 @@ impl Campaign {
     }
 }
 
-/// The run of a seed with its fault, and without.
+/// The run of a seed with its fault, and without, on one of these machines, or on one that is drawn.
 #[must_use]
-pub fn replay(seed: u64) -> [Outcome; 2] {
-    let scenario = Scenario::new(seed);
+pub fn replay(seed: u64, machines: &[Commissioned]) -> [Outcome; 2] {
+    let scenario = Scenario::on(seed, machines);
     let mut pair = [run(scenario.clone(), false), run(scenario, true)];
     if pair[0].detected().is_none() {
         let mut with_other_noise = pair[1].scenario.clone();

@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use firmware::parameters::Parameters;
 
+use super::commissioned::Commissioned;
 use super::injection::{HEARTBEAT_MS, Injection};
 use super::motion::{
     EXCITED_AT, EXCITED_TICKS, FIRST_MOTION, MOTION_TICKS, Motion, REFERENCE, place_mm,
@@ -46,12 +47,26 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// The scenario of a seed.
+    /// The scenario of a seed, on a machine that is drawn and told.
     #[must_use]
     pub fn new(seed: u64) -> Self {
+        Self::on(seed, &[])
+    }
+
+    /// The same on one of these machines, where there are some.
+    #[must_use]
+    pub fn on(seed: u64, machines: &[Commissioned]) -> Self {
         let mut random = Random::new(seed);
-        let stage = machine(random.bits(), seed);
-        let mut parameters = told(&stage);
+        let drawn = random.bits();
+        let commissioned =
+            (!machines.is_empty()).then(|| &machines[(drawn % machines.len() as u64) as usize]);
+        let (stage, mut parameters) = match commissioned {
+            Some(known) => (machine(known.machine, seed), known.parameters.clone()),
+            None => {
+                let stage = machine(drawn, seed);
+                (stage, told(&stage))
+            }
+        };
         let [x_mm, y_mm] = place_mm(&mut random);
         let start = [x_mm * 1e-3, y_mm * 1e-3, random.between(-0.49, 0.49) * TAU];
         let mut motion = Motion::random(&mut random);

@@ -72,6 +72,8 @@ pub enum Group {
     Motion,
     /// Faults, lost encoders, power cuts.
     Faults,
+    /// Machines that nobody knows, brought up.
+    Commissioning,
     /// Numbers against better ones.
     Exactness,
     /// The image on the emulated chip. Needs it built.
@@ -82,10 +84,11 @@ pub enum Group {
 
 impl Group {
     /// In the page's order.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Demonstration,
         Self::Motion,
         Self::Faults,
+        Self::Commissioning,
         Self::Exactness,
         Self::Chip,
         Self::Host,
@@ -98,6 +101,7 @@ impl Group {
             Self::Demonstration => "Demonstration",
             Self::Motion => "Motion",
             Self::Faults => "What happens when something breaks",
+            Self::Commissioning => "Commissioning",
             Self::Exactness => "Exactness",
             Self::Chip => "On the emulated chip",
             Self::Host => "On a desktop",
@@ -119,7 +123,7 @@ impl Group {
                  counted on the emulator, not cycles: it models no wait states of the flash and no exception entry.",
             ),
             Self::Host => Some("These count on a machine that does nothing else."),
-            Self::Motion | Self::Faults | Self::Exactness => None,
+            Self::Motion | Self::Faults | Self::Commissioning | Self::Exactness => None,
         }
     }
 }

@@ -3,6 +3,8 @@
 //! `SEEDS=24` takes machines 1 to 24 in place of 1 to 4, `SEEDS=9-16` those. Each machine is told as it is done, and kept in a file
 //! (`RESULTS=FILE`): one that stands there is not run again, so that a long table may be made in pieces. A machine is run again once its line is
 //! taken out of it. `TABLE=1` runs none, and prints the table of those that there are. `ZEROS=ends` takes the guides' ends in place of the jig.
+//! `SETTINGS=DIR` leaves in `DIR/NUMBER` what the controller of each machine that was not refused keeps, and plugs the machines in as they belong:
+//! `tripivot faults --commissioned DIR` runs the campaign of faults on them.
 //!
 //! | file | idea |
 //! |---|---|
@@ -15,7 +17,8 @@ mod rows;
 
 use desk::commission::{Chosen, Done, Machine, Task, ZerosBy, run};
 use desk::record::RecordError;
-use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::campaign::SETTINGS;
+use hal_sim::machine::devices::{SettingsFlash, WiringParameters};
 use hal_sim::machine::unknown;
 use judged::Warmth;
 use rows::Row;
@@ -86,15 +89,27 @@ impl Machine for Counted {
     }
 }
 
+/// Where settings are left.
+fn kept(seed: u64) -> Option<PathBuf> {
+    let folder = std::env::var_os("SETTINGS")?;
+    Some(PathBuf::from(folder).join(seed.to_string()))
+}
+
 fn commissioned(seed: u64) -> Row {
-    let truth = unknown(seed);
+    let mut truth = unknown(seed);
+    let kept = kept(seed);
+    let mut flash = SettingsFlash::in_memory();
+    if let Some(folder) = &kept {
+        truth.wiring = WiringParameters::REFERENCE;
+        std::fs::create_dir_all(folder).expect("a folder");
+        let path = folder.join(SETTINGS);
+        // What an earlier run has left would be no unknown machine.
+        let _ = std::fs::remove_file(&path);
+        flash = SettingsFlash::open(&path).expect("a file for settings");
+    }
     let warmth = Warmth::default();
     let mut counted = Counted {
-        machine: SimulatedMachine::watched(
-            &truth,
-            SettingsFlash::in_memory(),
-            Some(warmth.watch()),
-        ),
+        machine: SimulatedMachine::watched(&truth, flash, Some(warmth.watch())),
         questions: 0,
     };
     let done = run(&mut counted, &Chosen::all(zeros()), &mut |done| {
@@ -112,6 +127,9 @@ fn commissioned(seed: u64) -> Row {
         ("time", done.iter().map(|done| done.seconds).sum()),
         ("questions", f64::from(counted.questions)),
     ];
+    if let (Some(_), Some(folder)) = (&refused, &kept) {
+        std::fs::remove_dir_all(folder).expect("its folder");
+    }
     if refused.is_none() {
         figures.extend(judged::figures(&truth, &done, &warmth));
         figures.extend(judged::gains(&truth, counted.machine.parameters()));

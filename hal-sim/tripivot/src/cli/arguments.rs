@@ -180,6 +180,10 @@ pub(super) struct Faults {
     /// Run the run of this seed again, alone, and tell about it.
     #[arg(long, value_name = "SEED", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX), conflicts_with_all = ["runs", "seed", "jobs"])]
     pub(super) only: Option<u64>,
+    /// Run it on commissioned machines: a folder with a folder for each, by its number, as `SETTINGS=DIR cargo bench -p tripivot --bench
+    /// commission` leaves them. Without, each run draws a machine, whose controller is told what its builder knows.
+    #[arg(long, value_name = "DIR")]
+    pub(super) commissioned: Option<PathBuf>,
     /// Seeds of runs whose problems are known: told, but no failure. One that has none any more is one.
     #[arg(long, value_name = "SEEDS", value_delimiter = ',', value_parser = whole(0..=u64::MAX))]
     pub(super) known: Vec<u64>,

@@ -42,6 +42,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     SettingsFile(#[from] hal_sim::machine::devices::SettingsFileError),
     #[error(transparent)]
+    Commissioned(#[from] hal_sim::campaign::CommissionedError),
+    #[error(transparent)]
     Stage(#[from] super::stage::StageError),
     #[error(transparent)]
     Script(#[from] ScriptError),

@@ -15,7 +15,9 @@ use super::error::CliError;
 use super::json;
 use super::signal::until_signal;
 use drawing::{Progress, WholeFile};
-use hal_sim::campaign::{Campaign, NAMES, Outcome, Total, csv, replay, table, totals};
+use hal_sim::campaign::{
+    Campaign, Commissioned, NAMES, Outcome, Total, csv, replay, table, totals,
+};
 
 /// Runs that are told one by one; the rest is counted.
 const TOLD: usize = 30;
@@ -60,9 +62,13 @@ pub(super) fn run(arguments: &Faults) -> Result<ExitCode, CliError> {
     let unwritable = |error| CliError::unwritable(arguments.out.as_deref(), &error);
     // What cannot be written is found out before the runs, not after them.
     let file = (arguments.out.as_deref().map(WholeFile::create).transpose()).map_err(unwritable)?;
+    let machines = match &arguments.commissioned {
+        Some(folder) => Commissioned::all_of(folder)?,
+        None => Vec::new(),
+    };
     let runs = match arguments.only {
-        Some(seed) => alone(seed),
-        None => campaign(arguments, &*until_signal()?),
+        Some(seed) => alone(seed, &machines),
+        None => campaign(arguments, &machines, &*until_signal()?),
     };
     if arguments.json {
         json::print(&runs.document())?;
@@ -81,17 +87,17 @@ pub(super) fn run(arguments: &Faults) -> Result<ExitCode, CliError> {
     }
 }
 
-fn alone(seed: u64) -> Runs {
+fn alone(seed: u64, machines: &[Commissioned]) -> Runs {
     let begun = Instant::now();
     Runs {
         campaign: None,
-        outcomes: replay(seed).to_vec(),
+        outcomes: replay(seed, machines).to_vec(),
         wall_s: begun.elapsed().as_secs_f64(),
     }
 }
 
 /// Ctrl-C ends it; what has been run until then is told.
-fn campaign(arguments: &Faults, stop: &AtomicBool) -> Runs {
+fn campaign(arguments: &Faults, machines: &[Commissioned], stop: &AtomicBool) -> Runs {
     let jobs = arguments
         .jobs
         .unwrap_or_else(|| available_parallelism().map_or(1, NonZero::get));
@@ -99,6 +105,7 @@ fn campaign(arguments: &Faults, stop: &AtomicBool) -> Runs {
         runs: u64::from(arguments.runs),
         seed: arguments.seed,
         jobs,
+        machines,
     };
     let progress = Progress::new(campaign.runs, arguments.quiet);
     let outcomes = campaign.run(|runs| {
