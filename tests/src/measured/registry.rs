@@ -356,6 +356,19 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "campaign-commissioned",
+        title: "The campaign of faults on commissioned machines",
+        group: Group::Commissioning,
+        about: "[The campaign](#the-campaign-of-faults) on the machines of the table before, with the settings that its commissionings have left \
+                in `target/commissioned`, in place of what a builder would tell the controller.",
+        // With findings, which are told, its exit code is 1.
+        command: "cargo run --release -- faults --runs 1000 --commissioned target/commissioned || test $? = 1",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 130,
+        without: &[],
+    },
+    Section {
         name: "vectors",
         title: "Kinematics beside 50 digits",
         group: Group::Exactness,
