@@ -21,6 +21,10 @@ use std::f64::consts::TAU;
 /// Dynamic stiffness of the motor on its spring, over the spring's, under which the motor's angle does not follow from the ring's.
 const LEAST_APART: f64 = 0.25;
 
+/// What springs and dampers of an identified machine may be, over what they were found as.
+const UNCERTAIN_SPRINGS: [f64; 2] = [0.95, 1.05];
+const UNCERTAIN_DAMPERS: f64 = 0.7;
+
 /// What is carried, about the platform's centre; lengths in track radii, masses times the track radius squared: kg m^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
@@ -127,6 +131,13 @@ impl Chain {
             damping: self.damping * (1.0 + damps),
             ..*self
         }
+    }
+
+    /// What an identified machine may be as well: springs off either way, and dampers weaker. Resonances are found to 2 % at most machines; play
+    /// softens them where nothing bears on the gears, and damps where it is crossed.
+    #[must_use]
+    pub fn as_it_may_be(&self) -> [Self; 2] {
+        UNCERTAIN_SPRINGS.map(|springs| self.scaled(springs, UNCERTAIN_DAMPERS))
     }
 
     /// The same with all springs so many times as stiff, and dampers so many times as strong. Resonances go with the root of the first.

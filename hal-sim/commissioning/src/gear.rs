@@ -5,11 +5,11 @@
 //! amplitudes over the angle of the ring, K the motor constant, Jm the inertia of the motor with its side of the gear):
 //!
 //! ```text
-//! K I = -(n w)^2 (M E + Jm D) + F sign(w)
+//! K I = -(n w)^2 (M E + Jm D) + F sign(w) + k E
 //! ```
 //!
-//! F is friction that is uneven and what the gear passes on of the friction behind it: it has the sign of the rate, and falls out both ways. The
-//! back-EMF would tell D without Jm, but currents that swing about those below which a bridge's dead time takes less than all leave too little of it.
+//! F is friction that is uneven and what the gear passes on of the friction behind it: it has the sign of the rate, and falls out both ways. k is the
+//! spring of carriages that do not slide in so small a motion: a platform that turns in its middle leaves them where they are. The back-EMF would tell D without Jm, but currents that swing about those below which a bridge's dead time takes less than all leave too little of it.
 
 use core::f64::consts::TAU;
 
@@ -24,6 +24,8 @@ pub struct Turning {
     pub current_a: Complex<f64>,
     /// What the rings are off a steady motion, as far as inertias ask for torque at this one: M E, kg m^2 rad.
     pub moved: Complex<f64>,
+    /// What this ring is off it, rad: E.
+    pub ring: Complex<f64>,
 }
 
 /// What is known of a drive.
@@ -87,13 +89,14 @@ pub fn gear(turnings: &[Turning], known: &Known) -> Result<Gear, GearError> {
     if ways != [true; 2] {
         return Err(GearError::TooFew);
     }
-    // Real and imaginary parts of each record; unknown: those of D, and of F.
+    // Real and imaginary parts of each record; unknown: those of D and of F, and k.
     let square = |one: &Turning| -(known.ratio * one.rate_rad_s).powi(2);
-    let rows = DMatrix::from_fn(2 * turnings.len(), 4, |row, column| {
+    let rows = DMatrix::from_fn(2 * turnings.len(), 5, |row, column| {
         let one = &turnings[row / 2];
         match column == row % 2 {
             true => known.motor_inertia_kg_m2 * square(one),
             false if column == 2 + row % 2 => one.rate_rad_s.signum(),
+            false if column == 4 => [one.ring.re, one.ring.im][row % 2],
             false => 0.0,
         }
     });
@@ -134,6 +137,7 @@ mod tests {
         motor_constant: 4.1,
         motor_inertia_kg_m2: 0.014,
     };
+    const STUCK_N_M_RAD: f64 = 800.0;
     const ERROR_RAD: (f64, f64) = (150e-6, 2.1);
 
     /// What a drive with such a gear would be recorded as, whose ring is off a steady motion.
@@ -142,12 +146,15 @@ mod tests {
         let error: Complex<f64> =
             -Complex::<f64>::i() * Complex::from_polar(ERROR_RAD.0, ERROR_RAD.1);
         let moved = Complex::new(3e-7, -2e-7);
-        let torque =
-            (moved + error * KNOWN.motor_inertia_kg_m2) * square + friction * rate_rad_s.signum();
+        let ring = Complex::new(5e-6 * rate_rad_s, -2e-6);
+        let torque = (moved + error * KNOWN.motor_inertia_kg_m2) * square
+            + friction * rate_rad_s.signum()
+            + ring * STUCK_N_M_RAD;
         Turning {
             rate_rad_s,
             current_a: torque / KNOWN.motor_constant,
             moved,
+            ring,
         }
     }
 

@@ -101,17 +101,17 @@ const LEAD_TO_HZ: f64 = 3_000.0;
 const NOTCH_HZ: [f64; 2] = [10.0, 9_000.0];
 const WIDTH: [f64; 2] = [0.01, 2.0];
 const DEPTH: [f64; 2] = [0.02, 1.0];
-/// Halvings of the range of the velocity gain.
-const HALVINGS: usize = 9;
-/// Starts that are followed, and how: the valleys are many, and a start's own rejection hardly tells how deep its valley is. Those that are
-/// followed to the end, and how.
-const FOLLOWED: usize = 4;
+/// How much less the next velocity gain is that is tried, and halvings after it.
+const LESS: f64 = 0.83;
+const HALVINGS: usize = 5;
+/// How each start is followed: the valleys are many, and a start's own rejection hardly tells how deep its valley is. Those that are followed to the
+/// end, and how.
 const FIRST: Effort = Effort {
     step: 0.25,
-    children: 18,
-    generations: 60,
+    children: 12,
+    generations: 30,
 };
-const ENDED: usize = 1;
+const ENDED: usize = 2;
 const LAST: Effort = Effort {
     step: 0.2,
     children: 24,
@@ -124,13 +124,14 @@ const UNSTABLE: f64 = 100.0;
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
 type Shape = [f64; 8];
 
-/// Gains for plants at several places and with several loads. `resonances_hz`: where the first two notches are tried, from the model
-/// in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are for, or 0.
+/// Gains for plants at several places and with several loads, and for those that they may be as well: valleys are sought on the first, which takes
+/// less time and does not get lost; the last search, and what is found, keeps the limits on all. `resonances_hz`: where the first two notches are
+/// tried, from the model in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are for, or 0.
 ///
 /// # Errors
 /// [`TuningError`].
 pub fn tune(
-    plants: &[Plant],
+    [plants, as_they_may_be]: [&[Plant]; 2],
     electrical: &[Electrical; 3],
     resonances_hz: &[f64],
     scheduled_inertia_kg_m2: f64,
@@ -140,38 +141,34 @@ pub fn tune(
     if plants.is_empty() {
         return Err(TuningError::NoPlant);
     }
-    let search = Search {
+    let all = [plants, as_they_may_be].concat();
+    let on = |plants| Search {
         plants,
         electrical,
         scheduled_inertia_kg_m2,
         tick_s: timing.tick_s,
         limits,
     };
+    let (first, last) = (on(plants), on(&all));
     let mut starts: Vec<_> = (starts(resonances_hz).into_iter())
-        .filter_map(|shape| {
-            search
-                .best_velocity(&shape)
-                .map(|found| (found.margins.rejection, shape, found))
-        })
+        .filter_map(|shape| Some((shape, first.best_velocity(&shape, falling(VELOCITY[1]))?)))
         .collect();
-    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut found: Vec<_> = (starts.iter().take(FOLLOWED))
-        .map(|(_, shape, found)| {
-            let start = unknowns(shape, found);
-            evolve(&start, &FIRST, |at| search.cost(at))
-        })
+    starts.sort_by(|(_, a), (_, b)| a.margins.rejection.total_cmp(&b.margins.rejection));
+    let mut found: Vec<_> = (starts.iter())
+        .map(|(shape, found)| evolve(&unknowns(shape, found), &FIRST, |at| first.cost(at)))
         .collect();
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let ended = found.into_iter().take(ENDED).filter_map(|(start, _)| {
-        let (at, _) = evolve(&start, &LAST, |at| search.cost(at));
-        search.best_velocity(&shape_of(&at))
+    let ended = (found.into_iter().take(ENDED)).map(|(start, _)| {
+        let (at, _) = evolve(&start, &LAST, |at| last.cost(at));
+        (shape_of(&at), velocity_of(&at))
     });
-    let found = (ended.chain(starts.first().map(|(_, _, found)| *found)))
-        .min_by(|a, b| a.margins.rejection.total_cmp(&b.margins.rejection))
+    let found = (ended.chain(starts.first().map(|(shape, _)| (*shape, VELOCITY[1]))))
+        .filter_map(|(shape, velocity)| last.best_velocity(&shape, falling(1.2 * velocity)))
+        .min_by(|a, b| last.loss(a).total_cmp(&last.loss(b)))
         .ok_or(TuningError::NotEvenSmall)?;
     let mut gains = found.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
-    let margins = search.margins(&gains);
+    let margins = last.margins(&gains);
     Ok(Tuned { gains, margins })
 }
 
@@ -222,8 +219,23 @@ fn shape_of(unknowns: &DVector<f64>) -> Shape {
     std::array::from_fn(|k| unknowns[k].exp())
 }
 
+fn velocity_of(unknowns: &DVector<f64>) -> f64 {
+    within(unknowns[unknowns.len() - 1].exp(), VELOCITY)
+}
+
+/// Velocity gains to try, down from one.
+fn falling(most: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(most), |velocity| Some(velocity * LESS))
+        .take_while(|velocity| *velocity > VELOCITY[0])
+}
+
 fn within(value: f64, [least, most]: [f64; 2]) -> f64 {
     value.clamp(least, most)
+}
+
+/// How far a value is over a limit, by its logarithm.
+fn over(value: f64, limit: f64) -> f64 {
+    f64::max(0.0, (value / limit).ln())
 }
 
 /// How far notches are out of their ranges, where nothing else tells a search which way is back.
@@ -300,45 +312,55 @@ impl Search<'_> {
     }
 
     fn cost(&self, unknowns: &DVector<f64>) -> f64 {
-        let velocity = unknowns[unknowns.len() - 1]
-            .exp()
-            .clamp(VELOCITY[0], VELOCITY[1]);
-        let gains = self.gains(&shape_of(unknowns), velocity);
+        let gains = self.gains(&shape_of(unknowns), velocity_of(unknowns));
         let margins = self.margins(&gains);
         if !margins.is_stable {
             return UNSTABLE;
         }
-        let over = |value: f64, limit: f64| f64::max(0.0, (value / limit).ln());
-        let parameters::Gains {
-            velocity_v_s_rad,
-            position_1_s,
-            integral_v_rad,
-        } = gains.pivots[0].gains;
-        let corners = [position_1_s, integral_v_rad / velocity_v_s_rad];
-        let tails: f64 = corners.map(|corner| over(TAIL_UNDER, corner)).iter().sum();
-        margins.rejection.ln()
-            + self.limits.tail * tails
+        self.loss(&Tuned { gains, margins })
             + outside(&shape_of(unknowns))
             + PENALTY
                 * (over(margins.ms, self.limits.ms)
                     + over(margins.resonance_peak, self.limits.resonance_peak))
     }
 
-    /// The largest velocity gain that keeps the limits.
-    fn best_velocity(&self, shape: &Shape) -> Option<Tuned> {
-        let [mut low, mut high] = VELOCITY.map(f64::ln);
-        let mut best = None;
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            let gains = self.gains(shape, middle.exp());
+    /// What is to be least of gains that keep the limits.
+    fn loss(&self, tuned: &Tuned) -> f64 {
+        let parameters::Gains {
+            velocity_v_s_rad,
+            position_1_s,
+            integral_v_rad,
+        } = tuned.gains.pivots[0].gains;
+        let corners = [position_1_s, integral_v_rad / velocity_v_s_rad];
+        let tails: f64 = corners.map(|corner| over(TAIL_UNDER, corner)).iter().sum();
+        tuned.margins.rejection.ln() + self.limits.tail * tails
+    }
+
+    /// The largest velocity gain under the first of these that keeps the limits; they fall. Where a resonance is only held at higher gains, smaller
+    /// ones do not keep them: no halving from the smallest finds it.
+    fn best_velocity(&self, shape: &Shape, falling: impl Iterator<Item = f64>) -> Option<Tuned> {
+        let tuned = |velocity: f64| {
+            let gains = self.gains(shape, velocity);
             let margins = self.margins(&gains);
-            if self.keeps(&margins) {
-                low = middle;
-                best = Some(Tuned { gains, margins });
-            } else {
-                high = middle;
+            self.keeps(&margins).then_some(Tuned { gains, margins })
+        };
+        let mut high = None;
+        for velocity in falling {
+            let Some(mut best) = tuned(velocity) else {
+                high = Some(velocity);
+                continue;
+            };
+            let (mut low, mut high) = (velocity, high.unwrap_or(velocity));
+            for _ in 0..HALVINGS {
+                let middle = (low * high).sqrt();
+                if let Some(found) = tuned(middle) {
+                    (low, best) = (middle, found);
+                } else {
+                    high = middle;
+                }
             }
+            return Some(best);
         }
-        best
+        None
     }
 }

@@ -26,10 +26,6 @@ pub const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.7, 0.0], [-0.35, 0.6], [-0.35,
 /// How many of them a search looks at; the others differ by the load's centre alone, and are looked at after it.
 pub const SEARCHED: usize = 2;
 
-/// What the springs and dampers of an identified model may be, over what they were found as: what gains have to bear. Resonances are found to 2 %
-/// at most machines; play softens them where nothing bears on the gears, and damps where it is crossed.
-const UNCERTAIN: [[f64; 2]; 3] = [[1.0, 1.0], [0.95, 0.7], [1.05, 0.7]];
-
 /// Lowest frequency of a grid, Hz; its highest, over half the ticks' rate; where resonances and margins are, from, Hz, and to, over the highest; points
 /// of the three parts, equal by their logarithms.
 const FROM_HZ: f64 = 0.5;
@@ -109,26 +105,6 @@ impl Plant {
         (places.iter())
             .filter_map(|[x, y]| Place::new(*x, *y))
             .map(|place| Self::from_model(electrical, chain, &place, timing))
-            .collect()
-    }
-
-    /// The same at several places of a model that was identified, with springs and dampers as it has them and off by what they may be.
-    #[must_use]
-    pub fn of_uncertain(
-        electrical: &[Electrical; 3],
-        chain: &Chain,
-        places: &[[f64; 2]],
-        timing: &Timing,
-    ) -> Vec<Self> {
-        (UNCERTAIN.iter())
-            .flat_map(|[springs, dampers]| {
-                Self::at_places(
-                    electrical,
-                    &chain.scaled(*springs, *dampers),
-                    places,
-                    timing,
-                )
-            })
             .collect()
     }
 

@@ -4,7 +4,9 @@
 use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
-use commissioning::tuning::{Gains, Margins, PLACES, Plant, margins};
+use commissioning::tuning::{
+    Gains, Limits, MOST_MS, Margins, PLACES, Plant, SEARCHED, margins, tune,
+};
 use desk::commission::Done;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::StageParameters;
@@ -70,12 +72,14 @@ pub fn figures(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figu
     figures
 }
 
+const FOLLOWING: &str = "following error once a turn of a motor";
+
 fn gears(machine: &StageParameters, all: &[Done]) -> Figures {
     let of = |name: &str| number(all, "gears", name, "urad");
     let truth_urad = 1e6 * machine.plant.gear.cyclic_error_rad;
     let gears = (1..=3).map(|pivot| percent(of(&format!("gear of pivot {pivot}")), truth_urad));
     let [with, without] =
-        ["", "not "].map(|not| of(&format!("following error, gears {not}made up for")));
+        ["", "not "].map(|not| of(&format!("{FOLLOWING}, gears {not}made up for")));
     vec![("gears", worst(gears)), ("gears left", with / without)]
 }
 
@@ -122,19 +126,33 @@ fn ring_and_bridge(machine: &StageParameters, pivot: usize) -> (usize, usize) {
     (ring, usize::from(wiring.bridge_of_ring[ring]))
 }
 
+/// What a pivot's numbers are compared with.
+struct Pivot {
+    number: usize,
+    /// An ohm by the controller's meters.
+    ohm: f64,
+    /// How much of its resistance its winding had as warm as it was.
+    warm: f64,
+    /// At its ring in the middle of the disk, kg m^2 by the meters.
+    inertia: f64,
+}
+
 fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
     let (plant, analog) = (&machine.plant, &machine.analog);
     let constant = plant.ring_torque_constant_n_m_a() * analog.supply_gain;
     let (chain, _) = loop_model(machine);
     let inertia = chain.inertia(&Place::centre()) * torque(machine);
-    let pivots = |of: &dyn Fn(usize, f64, f64, f64) -> f64| {
-        worst((0..3).map(|pivot| {
-            let (ring, bridge) = ring_and_bridge(machine, pivot);
-            let ohm = analog.supply_gain / analog.current_gain[bridge];
-            let warm = 1.0 + plant.winding.resistance_per_k * warmth.noted.get()[ring];
-            of(pivot + 1, ohm, warm, inertia[(ring, ring)])
-        }))
-    };
+    let pivots: [Pivot; 3] = std::array::from_fn(|pivot| {
+        let (ring, bridge) = ring_and_bridge(machine, pivot);
+        let warm = 1.0 + plant.winding.resistance_per_k * warmth.noted.get()[ring];
+        Pivot {
+            number: pivot + 1,
+            ohm: analog.supply_gain / analog.current_gain[bridge],
+            warm,
+            inertia: inertia[(ring, ring)],
+        }
+    });
+    let pivots = |of: &dyn Fn(&Pivot) -> f64| worst(pivots.iter().map(of));
     let of = |name: String, unit: &str| number(all, "identification", &name, unit);
     let constant_of = |pivot| {
         number(
@@ -151,37 +169,35 @@ fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
     vec![
         (
             "R J / K",
-            pivots(&|pivot, ohm, warm, inertia| {
-                let found = of(format!("pivot {pivot}: R J / K"), "V s^2/rad");
-                percent(
-                    found,
-                    ohm * warm * plant.resistance_ohm * inertia / constant,
-                )
+            pivots(&|pivot| {
+                let found = of(format!("pivot {}: R J / K", pivot.number), "V s^2/rad");
+                let ohm = pivot.ohm * pivot.warm * plant.resistance_ohm;
+                percent(found, ohm * pivot.inertia / constant)
             }),
         ),
         (
             "K",
-            pivots(&|pivot, _, _, _| percent(constant_of(pivot), constant)),
+            pivots(&|pivot| percent(constant_of(pivot.number), constant)),
         ),
         (
             "R",
-            pivots(&|pivot, ohm, _, _| {
-                let found = of(format!("winding of pivot {pivot}"), "ohm");
-                percent(found, ohm * plant.resistance_ohm)
+            pivots(&|pivot| {
+                let found = of(format!("winding of pivot {}", pivot.number), "ohm");
+                percent(found, pivot.ohm * plant.resistance_ohm)
             }),
         ),
         (
             "R warm",
-            pivots(&|pivot, ohm, warm, _| {
-                let found = of(format!("winding of pivot {pivot}"), "ohm");
-                percent(found, ohm * warm * plant.resistance_ohm)
+            pivots(&|pivot| {
+                let found = of(format!("winding of pivot {}", pivot.number), "ohm");
+                percent(found, pivot.ohm * pivot.warm * plant.resistance_ohm)
             }),
         ),
         (
             "L",
-            pivots(&|pivot, ohm, _, _| {
-                let found = of(format!("winding of pivot {pivot}"), "mH");
-                percent(found, ohm * plant.inductance_h * 1e3)
+            pivots(&|pivot| {
+                let found = of(format!("winding of pivot {}", pivot.number), "mH");
+                percent(found, pivot.ohm * plant.inductance_h * 1e3)
             }),
         ),
         ("friction", percent(coulomb, friction * torque(machine))),
@@ -248,28 +264,59 @@ fn mechanics(machine: &StageParameters, all: &[Done]) -> Figures {
     ]
 }
 
-/// The machine's own plants where its loops are judged. Carriages slide: they hold nothing along their guides.
-pub fn plants(machine: &StageParameters) -> (Vec<Plant>, [Electrical; 3], Chain) {
-    let (chain, mut electrical) = loop_model(machine);
-    let plant = &machine.plant;
-    for drive in &mut electrical {
-        drive.resistance_ohm *= 1.0 + plant.winding.resistance_per_k * plant.winding.start_k;
-    }
-    let plants = Plant::at_places(&electrical, &chain, &PLACES, &Timing::STAGE);
-    (plants, electrical, chain)
+/// The machine's own plants at some places. Carriages slide: they hold nothing along their guides.
+struct True {
+    chain: Chain,
+    electrical: [Electrical; 3],
 }
 
-/// What gains make of plants at the worst of them.
-pub fn at_worst(plants: &[Plant], gains: &Gains) -> Margins {
-    let all = plants
-        .iter()
-        .map(|plant| margins(plant, gains, Timing::STAGE.tick_s));
-    all.reduce(Margins::worse).expect("a plant")
+impl True {
+    fn of(machine: &StageParameters) -> Self {
+        let (chain, mut electrical) = loop_model(machine);
+        let plant = &machine.plant;
+        for drive in &mut electrical {
+            drive.resistance_ohm *= 1.0 + plant.winding.resistance_per_k * plant.winding.start_k;
+        }
+        Self { chain, electrical }
+    }
+
+    fn plants(&self, places: &[[f64; 2]]) -> Vec<Plant> {
+        Plant::at_places(&self.electrical, &self.chain, places, &Timing::STAGE)
+    }
+
+    /// What gains make of them at the worst place.
+    fn at_worst(&self, gains: &Gains) -> Margins {
+        let all = (self.plants(&PLACES).into_iter())
+            .map(|plant| margins(&plant, gains, Timing::STAGE.tick_s));
+        all.reduce(Margins::worse).expect("a plant")
+    }
+
+    /// The best that a servo of this structure does on them: everything known, and no friction that holds the stage off.
+    fn best(&self) -> Option<Margins> {
+        let centre = Place::centre();
+        let tuned = tune(
+            [&self.plants(&PLACES[..SEARCHED]), &[]],
+            &self.electrical,
+            &self.chain.resonances_hz(&centre),
+            self.chain.inertia(&centre)[(0, 0)],
+            &Timing::STAGE,
+            &Limits::ON_MODEL,
+        )
+        .ok()?;
+        let plants = self.plants(&PLACES);
+        let (_, best) = (tuned.gains).slowed_until_sound(&plants, MOST_MS, Timing::STAGE.tick_s)?;
+        Some(best)
+    }
 }
 
 /// The controller's gains before the machine's own plant.
 pub fn gains(machine: &StageParameters, parameters: &Parameters) -> Figures {
-    let (plants, ..) = plants(machine);
-    let found = at_worst(&plants, &Gains::of(parameters));
-    vec![("ms true", found.ms), ("s30 true", found.rejection)]
+    let own = True::of(machine);
+    let found = own.at_worst(&Gains::of(parameters));
+    let best = own.best().map_or(f64::NAN, |best| best.rejection);
+    vec![
+        ("ms true", found.ms),
+        ("s30 true", found.rejection),
+        ("s30 best", found.rejection / best),
+    ]
 }

@@ -21,7 +21,7 @@ pub struct Row {
 /// A figure's short name, what it is, digits behind the point, and its limit.
 type Figure = (&'static str, &'static str, usize, Option<f64>);
 
-const FIGURES: [Figure; 28] = [
+const FIGURES: [Figure; 29] = [
     ("time", "simulated time, s", 0, Some(300.0)),
     ("questions", "questions to the person", 0, Some(2.0)),
     ("ms safe", "Ms with safe gains", 2, None),
@@ -36,6 +36,12 @@ const FIGURES: [Figure; 28] = [
     ),
     ("ms true", "Ms on the true plant", 2, Some(2.0)),
     ("s30 true", "S(30 Hz) on the true plant", 3, None),
+    (
+        "s30 best",
+        "S(30 Hz) on the true plant over the best that gains can do there",
+        2,
+        Some(1.25),
+    ),
     (
         "peak",
         "following error of a pivot at full speed, urad",
@@ -57,7 +63,7 @@ const FIGURES: [Figure; 28] = [
     ("gears", "cyclic error of a gear, % off", 2, None),
     (
         "gears left",
-        "following error while turning, gears made up for over not",
+        "following error once a turn of a motor, gears made up for over not",
         2,
         None,
     ),

@@ -1,6 +1,6 @@
-//! Turning without end once more, and faster: how unevenly each gear turns. Made up for from here on, where the pivots follow no worse for it.
+//! Turning without end once more, and faster: how unevenly each gear turns. Made up for from here on, where the rings turn the more evenly for it.
 
-use crate::commission::bench::{Bench, PEAK};
+use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
@@ -20,8 +20,6 @@ const ROWS: usize = 2_000;
 const TURN_RAD: f64 = 0.25 * TAU;
 /// An error that is not so many of its standard deviations is none that is known.
 const LEAST_SURE: f64 = 5.0;
-/// Over which a following error is looked at, s.
-const LOOK_S: f64 = 1.0;
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
@@ -41,28 +39,26 @@ pub(super) fn run(
     let rates = RATES.map(|share| share * most_rad_s);
     let before = set_aside(bench)?;
     bench.reserve(ROWS)?;
-    let roughly = gears.find(bench, &rates)?;
+    let mut turnings = Default::default();
+    let roughly = gears.find(bench, &rates, &mut turnings)?;
+    still(bench)?;
     let is_sure = |gear: &Gear| gear.amplitude_rad > LEAST_SURE * gear.deviation_rad;
-    let sure: Vec<bool> = roughly.iter().map(is_sure).collect();
+    let sure: Vec<bool> = roughly.gears.iter().map(is_sure).collect();
     if !sure.contains(&true) {
-        tell(found, &roughly, &roughly);
-        still(bench)?;
+        tell(found, &roughly.gears);
         return Ok(bench.set(&before)?);
     }
-    // Once more with that in force: rings that move less beside the steady motion have less of carriages that do not slide in it. Twice both ways:
-    // one quarter turn has its own friction.
-    let without_rad = followed(bench)?;
-    still(bench)?;
-    bench.set(&values(&roughly, &sure))?;
+    // Once more with that in force: rings that move less beside the steady motion tell apart what that asks for. Twice both ways: one quarter turn
+    // has its own friction.
+    bench.set(&values(&roughly.gears, &sure))?;
     let fast = [rates[0], rates[3]];
-    let gently = gears.find(bench, &[fast, fast].concat())?;
+    let gently = gears.find(bench, &[fast, fast].concat(), &mut turnings)?;
     still(bench)?;
-    tell(found, &gently, &roughly);
-    bench.set(&values(&gently, &sure))?;
-    bench.turn(rates[3])?;
-    let with_rad = followed(bench)?;
+    tell(found, &gently.gears);
+    bench.set(&values(&gently.gears, &sure))?;
+    let left_rad = uneven(&gears.turned(bench, rates[3])?);
     still(bench)?;
-    if !is_better(found, with_rad, without_rad) {
+    if !is_better(found, left_rad, roughly.uneven_rad) {
         bench.set(&before)?;
     }
     Ok(())
@@ -74,35 +70,59 @@ struct Gears {
     inertia: Matrix3<f64>,
 }
 
+/// What was found of the three gears, and how unevenly the rings turned at the last of the rates.
+struct Measured {
+    gears: Vec<Gear>,
+    uneven_rad: f64,
+}
+
 impl Gears {
-    /// Of the three pivots, from these rates. The platform turns on at the last of them.
-    fn find(&self, bench: &mut Bench<'_>, rates: &[f64]) -> Result<Vec<Gear>, CommissionError> {
-        let mut turnings: [Vec<Turning>; AXES] = Default::default();
+    /// Of the three pivots, from these rates and what was recorded before. The platform turns on at the last of them.
+    fn find(
+        &self,
+        bench: &mut Bench<'_>,
+        rates: &[f64],
+        turnings: &mut [Vec<Turning>; AXES],
+    ) -> Result<Measured, CommissionError> {
+        let mut uneven_rad = 0.0;
         for &rate in rates {
-            bench.turn(rate)?;
-            bench.delay(REACHED_S)?;
-            let mut beside = Vec::new();
-            for (pivot, drive) in self.drives.iter().enumerate() {
-                beside.push(turned(bench, pivot, rate, drive.ratio)?);
-            }
+            let beside = self.turned(bench, rate)?;
+            uneven_rad = uneven(&beside);
             for (pivot, turnings) in turnings.iter_mut().enumerate() {
                 let Beside {
                     rate_rad_s,
                     current_a,
-                    ..
+                    angle_rad,
                 } = beside[pivot];
                 let moved = moved(pivot, &beside, &self.inertia, self.drives[pivot].ratio);
                 turnings.push(Turning {
                     rate_rad_s,
                     current_a,
                     moved,
+                    ring: angle_rad,
                 });
             }
         }
-        (turnings.iter().zip(&self.drives))
+        let gears = (turnings.iter().zip(&self.drives))
             .map(|(turnings, drive)| gear(turnings, drive).or_else(no_gear))
+            .collect::<Result<_, _>>()?;
+        Ok(Measured { gears, uneven_rad })
+    }
+
+    /// What varies at each pivot while the platform turns at a rate, which it is brought to.
+    fn turned(&self, bench: &mut Bench<'_>, rate: f64) -> Result<Vec<Beside>, CommissionError> {
+        bench.turn(rate)?;
+        bench.delay(REACHED_S)?;
+        (self.drives.iter().enumerate())
+            .map(|(pivot, drive)| turned(bench, pivot, rate, drive.ratio))
             .collect()
     }
+}
+
+/// The largest amplitude of a ring's following error, once a turn of its motor.
+fn uneven(beside: &[Beside]) -> f64 {
+    let amplitudes = beside.iter().map(|one| one.angle_rad.norm());
+    amplitudes.fold(0.0, f64::max)
 }
 
 fn drive(bench: &mut Bench<'_>, known: &Known, pivot: usize) -> Result<gear::Known, RecordError> {
@@ -211,30 +231,30 @@ fn values(gears: &[Gear], sure: &[bool]) -> Vec<(u32, f64)> {
     known.flat_map(of_gear).collect()
 }
 
-/// What is told of gears, as far as they were known at first.
-fn tell(found: &mut Found, gears: &[Gear], at_first: &[Gear]) {
-    for (number, (gear, at_first)) in (1..).zip(gears.iter().zip(at_first)) {
+fn tell(found: &mut Found, gears: &[Gear]) {
+    for (number, gear) in (1..).zip(gears) {
         let amplitude_urad = 1e6 * gear.amplitude_rad;
         found.number(format!("gear of pivot {number}"), amplitude_urad, "urad");
         found.push(Finding::told(
             format!("gear of pivot {number}, once a turn of its motor"),
             format!(
                 "{amplitude_urad:.0} urad, +-{:.1}, at {:.0} deg",
-                1e6 * at_first.deviation_rad,
+                1e6 * gear.deviation_rad,
                 gear.phase_rad.to_degrees()
             ),
         ));
     }
 }
 
-/// Whether the pivots follow no worse with gears made up for.
-fn is_better(found: &mut Found, with_rad: f64, without_rad: f64) -> bool {
-    let (with_urad, without_urad) = (1e6 * with_rad, 1e6 * without_rad);
-    let is_better = with_urad <= without_urad;
-    found.number("following error, gears made up for", with_urad, "urad");
+/// Whether the rings turn more evenly with gears made up for.
+fn is_better(found: &mut Found, left_rad: f64, before_rad: f64) -> bool {
+    let (left_urad, before_urad) = (1e6 * left_rad, 1e6 * before_rad);
+    let is_better = left_urad <= before_urad;
+    let name = "following error once a turn of a motor";
+    found.number(format!("{name}, gears made up for"), left_urad, "urad");
     found.number(
-        "following error, gears not made up for",
-        without_urad,
+        format!("{name}, gears not made up for"),
+        before_urad,
         "urad",
     );
     let not_kept = if is_better {
@@ -243,18 +263,10 @@ fn is_better(found: &mut Found, with_rad: f64, without_rad: f64) -> bool {
         "tried, and not kept: "
     };
     found.push(Finding::told(
-        format!("{not_kept}largest following error of the turning pivots with that made up for"),
-        format!("{with_urad:.1} urad, {without_urad:.1} without"),
+        format!("{not_kept}largest {name} with that made up for"),
+        format!("{left_urad:.2} urad, {before_urad:.2} without"),
     ));
     is_better
-}
-
-/// The largest following error of a pivot while the platform turns, rad.
-fn followed(bench: &mut Bench<'_>) -> Result<f64, RecordError> {
-    bench.delay(REACHED_S)?;
-    bench.number("LST?", PEAK)?;
-    bench.delay(LOOK_S)?;
-    bench.number("LST?", PEAK)
 }
 
 fn still(bench: &mut Bench<'_>) -> Result<(), CommissionError> {

@@ -96,26 +96,33 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn plants(&self, places: &[[f64; 2]]) -> Vec<Plant> {
-        let electrical = &self.model.electrical;
-        let mut plants = Plant::of_uncertain(electrical, &self.chain, places, &Timing::STAGE);
-        plants.extend(self.measured.iter().cloned());
-        plants
+    /// The machine as it was found, and as it may be.
+    fn plants(&self, places: &[[f64; 2]]) -> [Vec<Plant>; 2] {
+        let at_places = |chain| {
+            Plant::at_places(&self.model.electrical, chain, places, &Timing::STAGE).into_iter()
+        };
+        let as_found = at_places(&self.chain).chain(self.measured.iter().cloned());
+        let as_it_may_be = self.chain.as_it_may_be();
+        [
+            as_found.collect(),
+            as_it_may_be.iter().flat_map(at_places).collect(),
+        ]
     }
 
     /// Gains to try, the most promising first: those of the search, and the former ones. All are slowed until the model at every place and the
     /// loops as they were measured keep Ms.
     fn candidates(&self, former: &Gains) -> Vec<Gains> {
         let centre = Place::centre();
+        let [as_found, as_it_may_be] = self.plants(&PLACES[..SEARCHED]);
         let tuned = tune(
-            &self.plants(&PLACES[..SEARCHED]),
+            [&as_found, &as_it_may_be],
             &self.model.electrical,
             &self.chain.resonances_hz(&centre),
             self.chain.inertia(&centre)[(0, 0)],
             &Timing::STAGE,
             &Limits::WITH_FRICTION,
         );
-        let all = self.plants(&PLACES);
+        let all = self.plants(&PLACES).concat();
         let mut candidates: Vec<_> = (tuned.ok().map(|tuned| tuned.gains).into_iter())
             .chain([*former])
             .filter_map(|gains| gains.slowed_until_sound(&all, MOST_MS, Timing::STAGE.tick_s))
@@ -179,7 +186,7 @@ impl<'a> Search<'a> {
     /// Gains slowed until they keep Ms, where they are faster than others still. The lines of a measured loop lie far apart: a resonance between two of
     /// them only the model shows.
     fn sound_and_faster(&self, gains: &Gains, others: &Gains) -> Option<Gains> {
-        let all = self.plants(&PLACES);
+        let all = self.plants(&PLACES).concat();
         let (sound, _) = gains.slowed_until_sound(&all, MOST_MS, Timing::STAGE.tick_s)?;
         (sound.least_velocity_v_s_rad() > others.least_velocity_v_s_rad()).then_some(sound)
     }
