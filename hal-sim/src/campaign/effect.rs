@@ -7,7 +7,7 @@ use super::injection::{HEARTBEAT_TICKS, Injection, MISSED_EVERY, second};
 use super::inputs::is_bad;
 use super::scenario::Scenario;
 use super::swings::Swings;
-use super::truth::{setpoint_turns, shown_errors_rad};
+use super::truth::{Subdivided, most_lead_rad, setpoint_turns, shown_errors_rad};
 use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
 use crate::machine::plant::AXES;
@@ -185,9 +185,13 @@ pub struct Now<'a> {
 /// Follows a run, and knows for how long each pivot has done what it should not.
 pub struct Effects<'a> {
     parameters: &'a Parameters,
+    subdivision: [Subdivided; AXES],
+    lead_rad: f64,
     /// Setpoint of the pivot when it broke, turns.
     broke_at: Option<f64>,
     position: Position,
+    /// What the encoders have shown last, counts, and that without the error within a period of the scale that the controller was told.
+    raw: [u32; AXES],
     last: [u32; AXES],
     excited: Excited,
     same: [u64; AXES],
@@ -222,11 +226,14 @@ pub struct Effects<'a> {
 impl<'a> Effects<'a> {
     /// At the beginning of a run.
     #[must_use]
-    pub const fn new(parameters: &'a Parameters) -> Self {
+    pub fn new(parameters: &'a Parameters) -> Self {
         Self {
             parameters,
+            subdivision: Subdivided::all(parameters),
+            lead_rad: most_lead_rad(parameters),
             broke_at: None,
             position: [0; 3],
+            raw: [0; AXES],
             last: [0; AXES],
             excited: Excited::NONE,
             same: [0; AXES],
@@ -293,7 +300,8 @@ impl<'a> Effects<'a> {
                 .all(|rate| f64::from(rate.abs()) < SLOW_RAD_S);
             let volts =
                 f64::from(now.duty[i]) / f64::from(self.parameters.power.pwm_counts) * supply_v;
-            let counts = now.shown[i].position();
+            let raw = now.shown[i].position();
+            let counts = self.subdivision[i].corrected(raw);
             let half = COUNTS_PER_TURN / 2;
             let step = way_counts(counts, self.last[i]);
             self.excited.look(i, counts);
@@ -318,9 +326,11 @@ impl<'a> Effects<'a> {
             for (swings, (volts, swing_v, counts)) in self.swings[i].iter_mut().zip(seen) {
                 swings.look(volts, swing_v, counts);
             }
-            self.same[i] = goes_on(self.same[i], step == 0);
-            if step != 0 {
-                self.moved[i] = step;
+            let raw_step = way_counts(raw, self.raw[i]);
+            self.raw[i] = raw;
+            self.same[i] = goes_on(self.same[i], raw_step == 0);
+            if raw_step != 0 {
+                self.moved[i] = raw_step;
             }
             self.fast[i] = goes_on(self.fast[i], f64::from(step) > most_counts);
             let duty = f64::from(now.duty[i]).abs();
@@ -410,7 +420,7 @@ impl<'a> Effects<'a> {
                 } else {
                     0.0
                 };
-                let errors = shown_errors_rad(now.shown, self.parameters, now.position);
+                let errors = shown_errors_rad(&self.last, self.parameters, now.position);
                 // The setpoint is behind by what the pivots go in ticks that do not come.
                 let age = tick.checked_sub(scenario.at);
                 let missed = age.map_or(0, |age| scenario.injection.missed_ticks(age));
@@ -419,12 +429,17 @@ impl<'a> Effects<'a> {
                 (errors.iter().zip(now.rates_rad_s)).any(|(error, rate_rad_s)| {
                     let rate_rad_s = f64::from(rate_rad_s.abs()) - braked_rad_s;
                     let lag_rad = allowed_s * rate_rad_s.max(0.0);
-                    *error > over * (supervision.following_error_rad + lag_rad)
+                    let sure_rad = if is_near {
+                        -self.lead_rad
+                    } else {
+                        self.lead_rad
+                    };
+                    *error > over * (supervision.following_error_rad + lag_rad) + sure_rad
                 })
             }
             Effect::FarOff => {
                 let most_rad = Parameters::REFERENCE.supervision.following_error_rad;
-                let errors = shown_errors_rad(now.shown, self.parameters, now.position);
+                let errors = shown_errors_rad(&self.last, self.parameters, now.position);
                 self.driven > 0 && errors.iter().any(|error| *error > most_rad)
             }
             // As it is referenced, the setpoint goes to where the pivot is.

@@ -294,7 +294,9 @@ impl Injection {
                     ]
                 }
             }
-            Self::FewMissedTicks(_) => &[FOLLOWING, NEARLY_FOLLOWING],
+            Self::FewMissedTicks(_) => {
+                &[FOLLOWING, NEARLY_FOLLOWING, OSCILLATES, NEARLY_OSCILLATES]
+            }
             Self::DirectionStuck => &[
                 FOLLOWING,
                 NEARLY_FOLLOWING,
@@ -315,7 +317,7 @@ impl Injection {
                 MAYBE_LEADS,
             ],
             Self::Jam => &[FOLLOWING, NEARLY_FOLLOWING, STILL, STALLED, NEARLY_STALLED],
-            // A machine that is hit rings.
+            // A machine that is hit rings. So does one whose loops hold a resonance that they do not hold with their gains cut by the current's limit.
             Self::Knock(_) | Self::Runaway(_) => MOTION,
             Self::Wedged => &[
                 STALLED,
@@ -324,8 +326,17 @@ impl Injection {
                 NEARLY_FOLLOWING,
                 STILL,
                 LED_ASTRAY,
+                OSCILLATES,
+                NEARLY_OSCILLATES,
             ],
-            Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING, NEARLY_FOLLOWING],
+            Self::HotMotor(_) => &[
+                HOT,
+                NEARLY_HOT,
+                FOLLOWING,
+                NEARLY_FOLLOWING,
+                OSCILLATES,
+                NEARLY_OSCILLATES,
+            ],
             Self::DamagedSettings => &[DAMAGED],
             Self::NewerSettings => &[NEWER],
             Self::Warning | Self::QueueFull | Self::Slip(_) => &const { [event(Effect::AtOnce)] },

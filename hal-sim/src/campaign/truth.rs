@@ -3,10 +3,10 @@
 
 use core::f64::consts::TAU;
 
+use firmware::control::SubdivisionTable;
 use firmware::parameters::{EncoderMounting, Parameters};
 use kinematics::{Pose, direct, inverse};
 
-use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
 use crate::machine::plant::{AXES, Plant};
 
@@ -62,16 +62,58 @@ pub fn setpoint_turns(setpoint: [i64; 3]) -> [f64; AXES] {
     })
 }
 
-/// Distances of what the encoders show from the setpoints of their pivots, rad.
+/// What the controller takes from an encoder's readings: the error within a period of the scale that it was told.
+pub struct Subdivided(SubdivisionTable);
+
+/// Binary places of a reading behind its counts.
+const PLACES: u32 = u32::BITS - COUNTS_PER_TURN.ilog2();
+
+impl Subdivided {
+    /// Of all encoders.
+    #[must_use]
+    pub fn all(parameters: &Parameters) -> [Self; AXES] {
+        [0, 1, 2].map(|i| Self(SubdivisionTable::new(&parameters.subdivision[i])))
+    }
+
+    /// A reading without it, to the nearest count.
+    #[must_use]
+    pub fn corrected(&self, counts: u32) -> u32 {
+        if !self.0.takes() {
+            return counts;
+        }
+        let reading = self.0.corrected(counts << PLACES);
+        reading.wrapping_add(1 << (PLACES - 1)) >> PLACES
+    }
+}
+
+/// Least cosine of a pivot's angle to its guide on the disk.
+const LEAST_COSINE: f64 = 0.6;
+
+/// The most that the controller lets a pivot lead its setpoint by, since its guide gives way, rad: to the platform at the largest acceleration of a pivot
+/// and to the friction of the other two.
+#[must_use]
+pub fn most_lead_rad(parameters: &Parameters) -> f64 {
+    let (guides, platform) = (&parameters.guides, &parameters.platform);
+    if guides.stiffness_n_um == 0.0 {
+        return 0.0;
+    }
+    let radius_m = parameters.geometry.radius_mm * 1e-3;
+    let acceleration_m_s2 = parameters.limits.pivot_acceleration_rad_s2 * radius_m;
+    let force_n =
+        (platform.mass_kg + platform.payload_kg) * acceleration_m_s2 + 2.0 * guides.coulomb_n;
+    force_n / (guides.stiffness_n_um * 1e6 * radius_m * LEAST_COSINE)
+}
+
+/// Distances of what the controller takes the encoders to show from the setpoints of their pivots, rad.
 #[must_use]
 pub fn shown_errors_rad(
-    encoders: &[Encoder; AXES],
+    counts: &[u32; AXES],
     parameters: &Parameters,
     setpoint: [i64; 3],
 ) -> [f64; AXES] {
     let wanted = setpoint_turns(setpoint);
     [0, 1, 2].map(|i| {
-        let shown = shown_turns(&parameters.encoders[i], encoders[i].position());
+        let shown = shown_turns(&parameters.encoders[i], counts[i]);
         let off = shown - wanted[i];
         (off - off.round()).abs() * TAU
     })
