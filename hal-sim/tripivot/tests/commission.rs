@@ -115,6 +115,19 @@ fn a_sound_machine_whose_friction_varies_over_a_turn_is_brought_up_without_a_jig
     let _ = std::fs::remove_dir_all(&folder);
 }
 
+/// Its soft transmission resonates under little preload: at 8 V teeth lift, and what answers is off a model with springs by a half.
+#[test]
+fn gears_whose_teeth_lift_are_measured_more_gently() {
+    let machine = unknown(56);
+    let (output, folder) = commission("teeth", &["--unknown", "56"]);
+    let told = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    assert!(told.contains("measured once more, more gently"), "{told}");
+    finds_what_is_moved(&machine, &told);
+    finds_gains(&told);
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
 /// The folder with what its controller keeps.
 fn brings_up(seed: u64, how: &[&str], most: &Most) -> PathBuf {
     let machine = unknown(seed);

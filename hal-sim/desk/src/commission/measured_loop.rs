@@ -2,7 +2,7 @@
 
 use super::bench::Bench;
 use super::found::{CommissionError, Found, Plot, Table};
-use super::sines::{Excited, PEAK_V, Recorded, Spot, excite};
+use super::sines::{Excited, Recorded, Spot, excite};
 use commissioning::chain::{Chain, Place};
 use commissioning::closed_loop::{LoopLine, closed_loop};
 use commissioning::drive_model::DriveModel;
@@ -21,6 +21,8 @@ const SETS: u32 = 2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredLoop {
     pub spot: Spot,
+    /// Of the excitation.
+    pub peak_v: f64,
     pub lines: Vec<LoopLine>,
 }
 
@@ -34,9 +36,10 @@ impl MeasuredLoop {
     pub fn measure(
         bench: &mut Bench<'_>,
         spot: Spot,
+        peak_v: f64,
         model: &DriveModel,
     ) -> Result<Self, CommissionError> {
-        let excited = excite(bench, &spot, (SETS, PEAK_V), Recorded::Loop)?;
+        let excited = excite(bench, &spot, (SETS, peak_v), Recorded::Loop)?;
         Ok(Self::new(&excited, spot, model))
     }
 
@@ -49,7 +52,11 @@ impl MeasuredLoop {
             (&model.electrical, &model.mechanical.excited),
             &Timing::STAGE,
         );
-        Self { spot, lines }
+        Self {
+            spot,
+            peak_v: excited.peak_v,
+            lines,
+        }
     }
 
     /// Largest singular value of the sensitivity over all lines.
@@ -125,8 +132,7 @@ impl MeasuredLoop {
                 ..line.clone()
             })
             .collect();
-        let spot = self.spot;
-        Some(Self { spot, lines })
+        Some(Self { lines, ..*self })
     }
 
     /// How far the sensitivity is from what gains make of the plant that was measured with it, over its size: the median of the lines.

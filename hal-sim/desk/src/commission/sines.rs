@@ -10,6 +10,8 @@ use firmware::control::excitation::{PERIOD_TICKS, line_harmonics};
 
 /// Peak of an excitation, V: its root mean square is a third of it, some times what the dead time takes.
 pub const PEAK_V: f64 = 8.0;
+/// The same for gears whose teeth that lifts where they resonate: a spring that lets go is none that a model has.
+pub const GENTLE_V: f64 = 5.0;
 /// How many times as strong that is as a weaker excitation, which shows what play in the gears does.
 pub const WEAKER: f64 = 2.5;
 /// Ticks from row to row, and rows of a period.

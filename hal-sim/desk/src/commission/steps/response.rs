@@ -24,14 +24,15 @@ pub(super) fn run(
             "begin with the step `identification`",
         );
     };
-    allow(bench, PEAK_V)?;
+    let peak_v = (known.centre.as_ref()).map_or(PEAK_V, |excited| excited.peak_v);
+    allow(bench, peak_v)?;
     known.loops.clear();
     let gains = servo_gains::read(bench)?;
     let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
     for spot in [CENTRE, FAR_OUT] {
         let measured = match known.centre.take() {
             Some(excited) if spot == CENTRE => MeasuredLoop::new(&excited, spot, &model),
-            _ => MeasuredLoop::measure(bench, spot, &model)?,
+            _ => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
         };
         found.push(told(&measured));
         measured.tell_numbers(found);

@@ -202,7 +202,7 @@ fn with(
     put(bench, gains)?;
     let mut after = Vec::new();
     for before in &known.loops {
-        match MeasuredLoop::measure(bench, before.spot, model) {
+        match MeasuredLoop::measure(bench, before.spot, before.peak_v, model) {
             Ok(measured) => after.push(measured),
             Err(CommissionError::Controller(error @ RecordError::Refused { .. })) => {
                 return back(bench, former, error.to_string()).map(Err);
