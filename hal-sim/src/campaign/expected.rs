@@ -443,3 +443,54 @@ impl Injection {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::injection::NAMES;
+    use super::*;
+    use crate::machine::unknown;
+    use crate::random::Random;
+    use firmware::fault::FAULT_DESCRIPTIONS;
+
+    /// Kinds that nothing which breaks at the machine brings about, and the tests that raise them, by kind or by what is told of it.
+    const ELSEWHERE: [(Kind, &str); 7] = [
+        (Kind::ImpossibleSetpoint, "tests/tests/impossible.rs"),
+        (Kind::WorkspaceLeft, "tests/tests/impossible.rs"),
+        (Kind::GuideRange, "tests/tests/impossible.rs"),
+        (Kind::NotFinite, "tests/tests/impossible.rs"),
+        (Kind::PivotsTooClose, "tests/tests/detections.rs"),
+        (Kind::ImageDamaged, "tests/tests/faults.rs"),
+        (Kind::CrystalFailed, "hal-sim/image/tests/chip_crash.rs"),
+    ];
+
+    #[test]
+    fn every_kind_of_fault_arises_here_or_in_a_test_of_its_own() {
+        let mut random = Random::new(1);
+        let mut drawn = [false; NAMES.len()];
+        let mut here = Vec::new();
+        for _ in 0..10_000 {
+            let injection = Injection::random(&mut random, 3, &unknown(1));
+            drawn[injection.index()] = true;
+            here.extend(
+                injection
+                    .expected()
+                    .causes
+                    .iter()
+                    .filter_map(|cause| cause.kind),
+            );
+        }
+        assert_eq!(drawn, [true; NAMES.len()]);
+        for description in FAULT_DESCRIPTIONS {
+            let kind = description.kind;
+            let elsewhere = ELSEWHERE.iter().find(|(other, _)| *other == kind);
+            assert_ne!(here.contains(&kind), elsewhere.is_some(), "{kind:?}");
+            if let Some((_, test)) = elsewhere {
+                let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+                let text = std::fs::read_to_string(root.join(test)).expect("the test is there");
+                let is_raised = text.contains(&format!("FaultKind::{kind:?}"));
+                let told = kind.text().split(',').next().unwrap_or_default();
+                assert!(is_raised || text.contains(told), "{test}: {kind:?}");
+            }
+        }
+    }
+}
