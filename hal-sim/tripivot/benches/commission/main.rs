@@ -137,7 +137,8 @@ fn commissioned(seed: u64) -> Row {
     Row {
         seed,
         refused,
-        figures: (figures.into_iter())
+        // What a step did not tell is left out: a file has no number for it.
+        figures: (figures.into_iter().filter(|(_, value)| value.is_finite()))
             .map(|(name, value)| (name.to_owned(), value))
             .collect(),
         steps: done.iter().map(seconds).collect(),
