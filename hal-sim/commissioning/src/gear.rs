@@ -9,7 +9,8 @@
 //! ```
 //!
 //! F is friction that is uneven and what the gear passes on of the friction behind it: it has the sign of the rate, and falls out both ways. k is the
-//! spring of carriages that do not slide in so small a motion: a platform that turns in its middle leaves them where they are. The back-EMF would tell D without Jm, but currents that swing about those below which a bridge's dead time takes less than all leave too little of it.
+//! spring of carriages that do not slide in so small a motion: a platform that turns in its middle leaves them where they are. Rings that hardly
+//! move do not tell it from D, and leave it none ([`TELLS_RAD`]). The back-EMF would tell D without Jm, but currents that swing about those below which a bridge's dead time takes less than all leave too little of it.
 
 use core::f64::consts::TAU;
 
@@ -80,6 +81,9 @@ pub fn once_a_turn(
     Ok(Complex::new(at[2], -at[3]))
 }
 
+/// So much of a ring's motion that shows no spring stands beside what was recorded, rad: those that move less tell of none.
+const TELLS_RAD: f64 = 2.5e-6;
+
 /// A gear from what was recorded at steady rates.
 ///
 /// # Errors
@@ -91,8 +95,10 @@ pub fn gear(turnings: &[Turning], known: &Known) -> Result<Gear, GearError> {
     }
     // Real and imaginary parts of each record; unknown: those of D and of F, and k.
     let square = |one: &Turning| -(known.ratio * one.rate_rad_s).powi(2);
-    let rows = DMatrix::from_fn(2 * turnings.len(), 5, |row, column| {
-        let one = &turnings[row / 2];
+    let rows = DMatrix::from_fn(2 * turnings.len() + 1, 5, |row, column| {
+        let Some(one) = turnings.get(row / 2) else {
+            return if column == 4 { TELLS_RAD } else { 0.0 };
+        };
         match column == row % 2 {
             true => known.motor_inertia_kg_m2 * square(one),
             false if column == 2 + row % 2 => one.rate_rad_s.signum(),
@@ -100,8 +106,10 @@ pub fn gear(turnings: &[Turning], known: &Known) -> Result<Gear, GearError> {
             false => 0.0,
         }
     });
-    let torques = DVector::from_fn(2 * turnings.len(), |row, _| {
-        let one = &turnings[row / 2];
+    let torques = DVector::from_fn(2 * turnings.len() + 1, |row, _| {
+        let Some(one) = turnings.get(row / 2) else {
+            return 0.0;
+        };
         let left = one.current_a * known.motor_constant - one.moved * square(one);
         if row % 2 == 0 { left.re } else { left.im }
     });
@@ -137,11 +145,10 @@ mod tests {
         motor_constant: 4.1,
         motor_inertia_kg_m2: 0.014,
     };
-    const STUCK_N_M_RAD: f64 = 800.0;
     const ERROR_RAD: (f64, f64) = (150e-6, 2.1);
 
     /// What a drive with such a gear would be recorded as, whose ring is off a steady motion.
-    fn turning(rate_rad_s: f64, friction: Complex<f64>) -> Turning {
+    fn turning(rate_rad_s: f64, friction: Complex<f64>, stuck_n_m_rad: f64) -> Turning {
         let square = -(KNOWN.ratio * rate_rad_s).powi(2);
         let error: Complex<f64> =
             -Complex::<f64>::i() * Complex::from_polar(ERROR_RAD.0, ERROR_RAD.1);
@@ -149,7 +156,7 @@ mod tests {
         let ring = Complex::new(5e-6 * rate_rad_s, -2e-6);
         let torque = (moved + error * KNOWN.motor_inertia_kg_m2) * square
             + friction * rate_rad_s.signum()
-            + ring * STUCK_N_M_RAD;
+            + ring * stuck_n_m_rad;
         Turning {
             rate_rad_s,
             current_a: torque / KNOWN.motor_constant,
@@ -161,12 +168,26 @@ mod tests {
     #[test]
     fn a_gear_is_found_beside_uneven_friction() {
         let friction = Complex::new(0.01, 0.004);
-        let all = [3.0, -3.0, 1.5, -1.5].map(|rate| turning(rate, friction));
+        let all = [3.0, -3.0, 1.5, -1.5].map(|rate| turning(rate, friction, 0.0));
         let found = gear(&all, &KNOWN).expect("both ways");
         let is = |value: f64, wanted: f64| (value / wanted - 1.0).abs() < 1e-9;
         assert!(is(found.amplitude_rad, ERROR_RAD.0) && is(found.phase_rad, ERROR_RAD.1));
         assert!(found.deviation_rad < 1e-12);
         assert_eq!(gear(&all[..1], &KNOWN), Err(GearError::TooFew));
+    }
+
+    /// Rings that move by some times what tells of a spring leave hardly any of it in the gear.
+    #[test]
+    fn carriages_that_do_not_slide_are_no_part_of_a_gear() {
+        let friction = Complex::new(0.01, 0.004);
+        let off = |stuck_n_m_rad: f64| {
+            let all = [3.0, -3.0, 1.5, -1.5].map(|rate| turning(rate, friction, stuck_n_m_rad));
+            let found = gear(&all, &KNOWN).expect("both ways");
+            found.amplitude_rad / ERROR_RAD.0 - 1.0
+        };
+        let off = [100.0, 200.0].map(off);
+        println!("{off:?}");
+        assert!(off.iter().all(|off| off.abs() < 0.01));
     }
 
     #[test]
