@@ -10,7 +10,8 @@
 //!
 //! F is friction that is uneven and what the gear passes on of the friction behind it: it has the sign of the rate, and falls out both ways. k is the
 //! spring of carriages that do not slide in so small a motion: a platform that turns in its middle leaves them where they are. Rings that hardly
-//! move do not tell it from D, and leave it none ([`TELLS_RAD`]). The back-EMF would tell D without Jm, but currents that swing about those below which a bridge's dead time takes less than all leave too little of it.
+//! move do not tell it from D, and leave it none ([`TELLS_RAD`]). The back-EMF would tell D without Jm, but currents that swing about those below
+//! which a bridge's dead time takes less than all leave too little of it.
 
 use core::f64::consts::TAU;
 
@@ -176,7 +177,7 @@ mod tests {
         assert_eq!(gear(&all[..1], &KNOWN), Err(GearError::TooFew));
     }
 
-    /// Rings that move by some times what tells of a spring leave hardly any of it in the gear.
+    /// Rings that move by some times what tells of a spring leave 0.02 and 0.05 % of it in the gear, which had 0.25 and 0.5 %.
     #[test]
     fn carriages_that_do_not_slide_are_no_part_of_a_gear() {
         let friction = Complex::new(0.01, 0.004);
@@ -187,7 +188,28 @@ mod tests {
         };
         let off = [100.0, 200.0].map(off);
         println!("{off:?}");
-        assert!(off.iter().all(|off| off.abs() < 0.01));
+        assert!(off[0].abs() < 0.00026 && off[1].abs() < 0.00052);
+    }
+
+    /// Rings that are held still move by a tenth of a microradian, by the gear and by what else there is: that tells of no spring. Friction
+    /// differs by a milli-newton metre from record to record.
+    #[test]
+    fn rings_that_hardly_move_leave_the_gear_as_it_is() {
+        let rates = [3.0, -3.0, 1.5, -1.5, 3.0, -3.0];
+        let differs = [1.0, 0.3, -0.8, 0.5, -0.2, -0.9];
+        let all = std::array::from_fn::<_, 6, _>(|k| {
+            let one = turning(rates[k], Complex::from(0.01), 0.0);
+            let ring = Complex::from_polar(1e-7 * (rates[k] / 3.0).powi(2), ERROR_RAD.1);
+            Turning {
+                current_a: one.current_a + 1e-3 * differs[k] / KNOWN.motor_constant,
+                ring: -Complex::<f64>::i() * ring + 2e-8 * differs[5 - k],
+                ..one
+            }
+        });
+        let found = gear(&all, &KNOWN).expect("both ways");
+        let off = found.amplitude_rad / ERROR_RAD.0 - 1.0;
+        println!("{off}");
+        assert!(off.abs() < 0.0006);
     }
 
     #[test]

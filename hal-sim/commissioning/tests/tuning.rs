@@ -2,10 +2,11 @@
 //! an encoder reads, and what the following error makes of it.
 
 use commissioning::chain::{Chain, Place};
+use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
 use commissioning::tuning::{
-    Gains, Limits, MOST_MS, Margins, PLACES, PivotGains, Plant, SEARCHED, margins, sensitivity,
-    tune,
+    Gains, Limits, MOST_MS, Margins, PLACES, PivotGains, Plant, SEARCHED, Tuned, margins,
+    sensitivity, tune,
 };
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::{self, Parameters};
@@ -200,6 +201,17 @@ fn predicted_loops_are_those_that_the_program_has() {
     }
 }
 
+/// Gains for plants of a model, scheduled for what it carries in the middle.
+fn tuned(
+    plants: [&[Plant]; 2],
+    (chain, electrical): &(Chain, [Electrical; 3]),
+    limits: &Limits,
+) -> Tuned {
+    let centre = Place::centre();
+    let (resonances_hz, inertia) = (chain.resonances_hz(&centre), chain.inertia(&centre)[(0, 0)]);
+    tune(plants, electrical, &resonances_hz, inertia, &TIMING, limits).expect("there are gains")
+}
+
 #[test]
 fn tuned_gains_give_the_margins_that_were_promised() {
     let (mut stage, parameters) = machine(0.0);
@@ -216,16 +228,7 @@ fn tuned_gains_give_the_margins_that_were_promised() {
             )
         })
         .into();
-    let inertia = chain.inertia(&Place::centre())[(0, 0)];
-    let tuned = tune(
-        [&plants, &[]],
-        &electrical,
-        &chain.resonances_hz(&Place::centre()),
-        inertia,
-        &TIMING,
-        &Limits::USUAL,
-    )
-    .expect("there are gains");
+    let tuned = tuned([&plants, &[]], &(chain, electrical), &Limits::USUAL);
     println!("{tuned:.3?}");
     let found = compare(&stage, &tuned.gains.applied_to(&parameters), 0.0, "tuned");
     found.holds();
@@ -251,19 +254,11 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
     let at_places = |chain: &Chain| Plant::at_places(&electrical, chain, places, &TIMING);
     let found = at_places(&chain);
     let at_worst = |as_it_may_be: &[Plant]| {
-        let tuned = tune(
-            [&found, as_it_may_be],
-            &electrical,
-            &chain.resonances_hz(&Place::centre()),
-            chain.inertia(&Place::centre())[(0, 0)],
-            &TIMING,
-            &Limits::WITH_FRICTION,
-        )
-        .expect("there are gains");
+        let model = (chain, electrical);
+        let tuned = tuned([&found, as_it_may_be], &model, &Limits::WITH_FRICTION);
         let off = [0.95, 0.97, 0.99, 1.01, 1.03, 1.05].map(|springs| {
             let off = at_places(&chain.scaled(springs, 0.7));
-            let all = (off.iter()).map(|plant| margins(plant, &tuned.gains, TIMING.tick_s));
-            let worst = all.reduce(Margins::worse).expect("a plant");
+            let worst = (tuned.gains.at_worst(&off, TIMING.tick_s)).expect("a plant");
             assert!(worst.is_stable);
             worst.ms
         });
@@ -357,15 +352,7 @@ fn stability_is_that_of_the_characteristic_polynomial() {
 fn gains_beyond_those_that_keep_no_margins_are_found() {
     let (chain, electrical) = loop_model(&hal_sim::machine::unknown(10));
     let plants = Plant::at_places(&electrical, &chain, &PLACES[..SEARCHED], &TIMING);
-    let tuned = tune(
-        [&plants, &[]],
-        &electrical,
-        &chain.resonances_hz(&Place::centre()),
-        chain.inertia(&Place::centre())[(0, 0)],
-        &TIMING,
-        &Limits::ON_MODEL,
-    )
-    .expect("there are gains");
+    let tuned = tuned([&plants, &[]], &(chain, electrical), &Limits::ON_MODEL);
     println!("{:?}", tuned.margins);
     assert!(tuned.margins.rejection < 0.0675);
 }

@@ -78,9 +78,6 @@ impl Subdivided {
     /// A reading without it, to the nearest count.
     #[must_use]
     pub fn corrected(&self, counts: u32) -> u32 {
-        if !self.0.takes() {
-            return counts;
-        }
         let reading = self.0.corrected(counts << PLACES);
         reading.wrapping_add(1 << (PLACES - 1)) >> PLACES
     }

@@ -233,7 +233,6 @@ fn notches(parameters: &Parameters, plant: &PlantParameters) -> [Notch; 2] {
 mod tests {
     use super::*;
     use crate::machine::plant::Imperfections;
-    use commissioning::tuning::{Margins, margins};
 
     #[test]
     fn no_search_finds_better_gains_than_the_reference_stage_has() {
@@ -243,9 +242,8 @@ mod tests {
         let plants = plants(&loop_model(&stage), &PLACES);
         let [found, kept] =
             [with_gains_tuned(&told, &stage), with_reference_gains(&told)].map(|told| {
-                let gains = Gains::of(&told);
-                let all = (plants.iter()).map(|plant| margins(plant, &gains, Timing::STAGE.tick_s));
-                (told, all.reduce(Margins::worse).expect("a plant"))
+                let worst = Gains::of(&told).at_worst(&plants, Timing::STAGE.tick_s);
+                (told, worst.expect("a plant"))
             });
         println!("found {:?}\nkept {:?}", found.1, kept.1);
         assert!(kept.1.is_stable && kept.1.ms < Limits::ON_MODEL.ms);

@@ -69,6 +69,13 @@ impl Gains {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// The worst margins on all plants; `None` where there is no plant.
+    #[must_use]
+    pub fn at_worst(&self, plants: &[Plant], tick_s: f64) -> Option<Margins> {
+        let all = plants.iter().map(|plant| margins(plant, self, tick_s));
+        all.reduce(Margins::worse)
+    }
+
     /// The fastest of slower and slower gains that is stable and keeps Ms on all plants, and the worst margins; `None` where none does.
     #[must_use]
     pub fn slowed_until_sound(
@@ -79,9 +86,7 @@ impl Gains {
     ) -> Option<(Self, Margins)> {
         let mut gains = *self;
         for _ in 0..MOST_LESS {
-            let all = (plants.iter())
-                .map(|plant| margins(plant, &gains, tick_s))
-                .reduce(Margins::worse)?;
+            let all = gains.at_worst(plants, tick_s)?;
             if all.is_stable && all.ms <= most_ms {
                 return Some((gains, all));
             }

@@ -101,9 +101,11 @@ const LEAD_TO_HZ: f64 = 3_000.0;
 const NOTCH_HZ: [f64; 2] = [10.0, 9_000.0];
 const WIDTH: [f64; 2] = [0.01, 2.0];
 const DEPTH: [f64; 2] = [0.02, 1.0];
-/// How much less the next velocity gain is that is tried, and halvings after it.
-const LESS: f64 = 0.83;
+/// The next velocity gain that is tried, over the one before, and halvings between the two that keep the limits and do not; where those of a shape
+/// begin that a search has ended at, over its own.
+const NEXT: f64 = 0.83;
 const HALVINGS: usize = 5;
+const ABOVE: f64 = 1.2;
 /// How each start is followed: the valleys are many, and a start's own rejection hardly tells how deep its valley is. Those that are followed to the
 /// end, and how.
 const FIRST: Effort = Effort {
@@ -150,10 +152,11 @@ pub fn tune(
         limits,
     };
     let (first, last) = (on(plants), on(&all));
-    let mut starts: Vec<_> = (starts(resonances_hz).into_iter())
+    let starts: Vec<_> = (starts(resonances_hz).into_iter())
         .filter_map(|shape| Some((shape, first.best_velocity(&shape, falling(VELOCITY[1]))?)))
         .collect();
-    starts.sort_by(|(_, a), (_, b)| a.margins.rejection.total_cmp(&b.margins.rejection));
+    let best_start = (starts.iter())
+        .min_by(|(_, a), (_, b)| a.margins.rejection.total_cmp(&b.margins.rejection));
     let mut found: Vec<_> = (starts.iter())
         .map(|(shape, found)| evolve(&unknowns(shape, found), &FIRST, |at| first.cost(at)))
         .collect();
@@ -162,8 +165,8 @@ pub fn tune(
         let (at, _) = evolve(&start, &LAST, |at| last.cost(at));
         (shape_of(&at), velocity_of(&at))
     });
-    let found = (ended.chain(starts.first().map(|(shape, _)| (*shape, VELOCITY[1]))))
-        .filter_map(|(shape, velocity)| last.best_velocity(&shape, falling(1.2 * velocity)))
+    let found = (ended.chain(best_start.map(|(shape, _)| (*shape, VELOCITY[1]))))
+        .filter_map(|(shape, velocity)| last.best_velocity(&shape, falling(ABOVE * velocity)))
         .min_by(|a, b| last.loss(a).total_cmp(&last.loss(b)))
         .ok_or(TuningError::NotEvenSmall)?;
     let mut gains = found.gains;
@@ -225,7 +228,7 @@ fn velocity_of(unknowns: &DVector<f64>) -> f64 {
 
 /// Velocity gains to try, down from one.
 fn falling(most: f64) -> impl Iterator<Item = f64> {
-    std::iter::successors(Some(most), |velocity| Some(velocity * LESS))
+    std::iter::successors(Some(most), |velocity| Some(velocity * NEXT))
         .take_while(|velocity| *velocity > VELOCITY[0])
 }
 
@@ -295,14 +298,8 @@ impl Search<'_> {
     }
 
     fn margins(&self, gains: &Gains) -> Margins {
-        let mut all = self
-            .plants
-            .iter()
-            .map(|plant| margins(plant, gains, self.tick_s));
-        let first = all
-            .next()
-            .unwrap_or_else(|| unreachable!("there is a plant"));
-        all.fold(first, Margins::worse)
+        (gains.at_worst(self.plants, self.tick_s))
+            .unwrap_or_else(|| unreachable!("there is a plant"))
     }
 
     fn keeps(&self, margins: &Margins) -> bool {
@@ -336,8 +333,8 @@ impl Search<'_> {
         tuned.margins.rejection.ln() + self.limits.tail * tails
     }
 
-    /// The largest velocity gain under the first of these that keeps the limits; they fall. Where a resonance is only held at higher gains, smaller
-    /// ones do not keep them: no halving from the smallest finds it.
+    /// The largest velocity gain that keeps the limits, from the first of these down. Where a resonance is only held at higher gains, smaller ones
+    /// do not keep them: no halving from the smallest finds it.
     fn best_velocity(&self, shape: &Shape, falling: impl Iterator<Item = f64>) -> Option<Tuned> {
         let tuned = |velocity: f64| {
             let gains = self.gains(shape, velocity);

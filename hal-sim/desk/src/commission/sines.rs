@@ -10,7 +10,7 @@ use firmware::control::excitation::{PERIOD_TICKS, line_harmonics};
 
 /// Peak of an excitation, V: its root mean square is a third of it, some times what the dead time takes.
 pub const PEAK_V: f64 = 8.0;
-/// The same for gears whose teeth that lifts where they resonate: a spring that lets go is none that a model has.
+/// The same where that lifts the teeth of gears, at their resonance: a spring that lets go is in no model.
 pub const GENTLE_V: f64 = 5.0;
 /// How many times as strong that is as a weaker excitation, which shows what play in the gears does.
 pub const WEAKER: f64 = 2.5;

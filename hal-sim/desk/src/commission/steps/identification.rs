@@ -40,14 +40,14 @@ pub(super) fn run(
     found: &mut Found,
 ) -> Result<(), CommissionError> {
     allow(bench, PEAK_V)?;
-    let mut identified = identified(bench, known, PEAK_V)?;
-    let is_torn = |model: &DriveModel| model.mechanical.residual > MOST_LEFT;
-    if identified.model.as_ref().map_or(true, is_torn) {
+    let mut identified = identify(bench, known, PEAK_V)?;
+    let fits = |model: &DriveModel| model.mechanical.residual < MOST_LEFT;
+    if !identified.model.as_ref().is_ok_and(fits) {
         found.push(Finding::told(
             "measured once more, more gently",
             format!("with {GENTLE_V} V; {PEAK_V} V may have lifted the teeth of the gears where they resonate"),
         ));
-        identified = self::identified(bench, known, GENTLE_V)?;
+        identified = identify(bench, known, GENTLE_V)?;
     }
     let Identified { excited, model } = identified;
     let quality = quality(&excited.lines);
@@ -75,7 +75,7 @@ struct Identified {
 }
 
 /// From excitations of a peak, and from weaker ones.
-fn identified(
+fn identify(
     bench: &mut Bench<'_>,
     known: &Known,
     peak_v: f64,
