@@ -86,19 +86,19 @@ struct Most {
     seconds: f64,
     /// What is left of the encoders' errors within the periods of their scales: the worst of what was measured here, and a tenth more.
     left_within_periods_urad: f64,
-    /// And of the following error once a turn of a motor with gears made up for, over that without.
-    left_of_gears: f64,
+    /// And of the following error once a turn of a motor, with gears made up for.
+    left_of_gears_urad: f64,
 }
 
 const WITH_JIG: Most = Most {
     seconds: 300.0,
     left_within_periods_urad: 0.0111,
-    left_of_gears: 0.276,
+    left_of_gears_urad: 2.52,
 };
 const WITHOUT_JIG: Most = Most {
     seconds: 420.0,
     left_within_periods_urad: 0.0187,
-    left_of_gears: 0.0485,
+    left_of_gears_urad: 0.575,
 };
 
 #[test]
@@ -141,7 +141,7 @@ fn brings_up(seed: u64, how: &[&str], most: &Most) -> PathBuf {
     finds_the_motors(&machine, &told, [MOST_CONSTANT_ERROR, MOST_FRICTION_ERROR]);
     finds_errors_within_periods(&machine, &told, most.left_within_periods_urad);
     finds_what_is_moved(&machine, &told);
-    finds_the_gears(&machine, &told, most.left_of_gears);
+    finds_the_gears(&machine, &told, most.left_of_gears_urad);
     finds_the_guides(&machine, &told);
     finds_gains(&told);
     ends_in_time(&told, most.seconds);
@@ -264,7 +264,8 @@ fn finds_limits(machine: &StageParameters, told: &str) {
     }
 }
 
-/// Torques are as volts and amperes have them: what their meters are off is no error of the method.
+/// Torques are as volts and amperes have them: what their meters are off is no error of the method. The worst of the machines tried here, and a
+/// tenth more.
 fn finds_what_is_moved(machine: &StageParameters, told: &str) {
     let (plant, analog) = (&machine.plant, &machine.analog);
     let torque = analog.supply_gain * analog.current_gain.iter().sum::<f64>() / 3.0;
@@ -275,16 +276,18 @@ fn finds_what_is_moved(machine: &StageParameters, told: &str) {
         + payload.inertia_kg_m2
         + payload.mass_kg * payload.eccentricity_m.powi(2);
     for (name, truth, most) in [
-        ("inertia of a motor with its ring", drive, 0.004),
-        ("mass of platform and load", mass, 0.04),
-        ("inertia about the platform's centre", inertia, 0.027),
+        ("inertia of a motor with its ring", drive, 0.0029),
+        ("mass of platform and load", mass, 0.0086),
+        ("inertia about the platform's centre", inertia, 0.0088),
     ] {
-        assert!(error(told, name, truth * torque).abs() < most, "{name}");
+        let off = error(told, name, truth * torque);
+        println!("{name}: {:+.2} %", 100.0 * off);
+        assert!(off.abs() < most, "{name}");
     }
 }
 
-/// Amplitudes, and what making up for them leaves of the following error while the platform turns, over what there was.
-fn finds_the_gears(machine: &StageParameters, told: &str, most_left: f64) {
+/// Amplitudes, and what making up for them leaves of the following error while the platform turns.
+fn finds_the_gears(machine: &StageParameters, told: &str, most_left_urad: f64) {
     let truth_urad = 1e6 * machine.plant.gear.cyclic_error_rad;
     for pivot in 1..=3 {
         let name = format!("gear of pivot {pivot}, once a turn of its motor");
@@ -295,7 +298,7 @@ fn finds_the_gears(machine: &StageParameters, told: &str, most_left: f64) {
     let name = "largest following error once a turn of a motor with that made up for";
     let errors: Vec<f64> = numbers(told, name).collect();
     println!("{errors:?} urad");
-    assert!(errors[0] < most_left * errors[1], "{told}");
+    assert!(errors[0] < f64::min(most_left_urad, errors[1]), "{told}");
 }
 
 /// Figures of the machines tried here, and a tenth more; 15 % is what is asked for.

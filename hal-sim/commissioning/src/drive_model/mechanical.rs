@@ -7,8 +7,14 @@
 //! more the weaker the excitation is. So there are two, and the machine is told without its play: as it answers where something bears on
 //! the gears.
 //!
-//! What cannot be told apart at one place: rings and platform below the guides' resonance. There only `J + m R^2 / 1.5` and `J + I / 3` are
-//! seen, J being a motor and its ring; mass, inertia and J follow apart as far as the platform stays behind above it. Motor and
+//! Carriages that stick hold the platform along their guides, the more the weaker the excitation is: by how much is found too.
+//!
+//! Neither play nor friction is a spring, and what the model leaves out is not the same at all frequencies: a per cent below the resonances, a
+//! third beside them. So lines count by what the fit leaves of them and of their neighbours: it is repeated with that (iteratively
+//! reweighted least squares, Holland and Welsch 1977). Otherwise what is left at resonances, which no number mends, bends the inertias.
+//!
+//! What cannot be told apart at one place: rings and platform below the guides' resonance. In the middle only `J + m R^2 / 1.5` and `J + I / 3` are
+//! seen there, J being a motor and its ring; far out the rings move other shares of mass and inertia, so that all three follow. Motor and
 //! ring follow apart by the two resonances only. So the guess counts too, as one that may be off by [`Guess::SPREAD`]; what is
 //! hardly better than the guess shows in its deviation.
 
@@ -44,7 +50,7 @@ impl Guess {
     pub const SPREAD: f64 = 0.7;
 }
 
-/// Lines in the middle of the disk, and those of an excitation that is weaker.
+/// Lines in the middle of the disk, those of an excitation that is weaker, and some far out.
 #[derive(Clone, Copy, Debug)]
 pub struct Responses<'a> {
     /// Of the excitation.
@@ -53,6 +59,10 @@ pub struct Responses<'a> {
     pub weaker: &'a [Line],
     /// How many times as strong the first is.
     pub times: f64,
+    /// Of an excitation as strong as the first, far out.
+    pub far: &'a [Line],
+    /// Where that was.
+    pub far_place: &'a Place,
 }
 
 /// The mechanics as found.
@@ -64,7 +74,7 @@ pub struct Mechanical {
     pub excited: Chain,
     /// Standard deviations, over themselves, in the order of [`NAMES`]; those of the last two are in kg m^2.
     pub deviations: Vec<f64>,
-    /// What is left of the responses, over them: root of the mean square over lines and entries.
+    /// What a model leaves of the responses in the middle to which all lines are alike, over them: root of the mean square over lines and entries.
     pub residual: f64,
     /// Standard deviation of a motor and its ring together, over itself: the sum is known better than either.
     pub drive_inertia_deviation: f64,
@@ -90,10 +100,17 @@ pub const NAMES: [&str; 13] = [
 /// What play gives way under the excitation, over the transmission's springs, and what it damps, over its dampers: as likely as not.
 const PLAY_GIVES: f64 = 0.2;
 const PLAY_DAMPS: f64 = 1.0;
-/// What the model leaves out, over a response: little where all moves as one, and more by the frequency and the weaker the excitation, since play
-/// is no spring.
+/// What sticking carriages hold of a platform that moves less, over what they hold of one that moves more, as a logarithm: as likely as not.
+const STICKS_MORE: f64 = 1.0;
+/// What the model leaves out, over a response, before that is known: little where all moves as one, and more by the frequency and the weaker the
+/// excitation is, since play is no spring.
 const MODEL_ERROR: f64 = 0.01;
 const GROWS_FROM_HZ: f64 = 300.0;
+/// Then by what is left: the median of lines so near by their logarithm, not less than this; a line of so many times as much counts half.
+const NEAR: f64 = 0.25;
+const LEAST_ERROR: f64 = 0.001;
+const HALF_AT: f64 = 2.0;
+const REPEATED: usize = 4;
 /// More of what is left is no fit.
 const MOST_RESIDUAL: f64 = 0.3;
 /// Starts: shares of the guessed stiffnesses of transmission and guides.
@@ -103,11 +120,15 @@ const GUIDES: [f64; 4] = [0.25, 0.45, 0.75, 1.1];
 const FOLLOWED: usize = 8;
 const STEPS: usize = 60;
 
-struct Measured {
+struct Measured<'a> {
     hz: f64,
+    place: &'a Place,
     /// What play gives way and damps, over what it does under the excitation.
     play: f64,
     response: Matrix3<Complex<f64>>,
+    /// By the scatter from period to period.
+    noise: Matrix3<f64>,
+    /// With what the model leaves out.
     deviation: Matrix3<f64>,
 }
 
@@ -121,71 +142,122 @@ pub fn mechanical(
     guess: &Guess,
     to_hz: f64,
 ) -> Result<Mechanical, DriveError> {
-    let place = Place::centre();
-    let of = |lines: &[Line], play: f64| -> Vec<Measured> {
+    let centre = Place::centre();
+    let of = |lines: &[Line], place, play: f64| -> Vec<Measured<'_>> {
         (lines.iter().filter(|line| line.hz <= to_hz))
-            .map(|line| by_torque(line, drives, play))
+            .map(|line| by_torque(line, drives, (place, play)))
             .collect()
     };
-    let mut measured = of(responses.lines, 1.0);
-    measured.extend(of(responses.weaker, responses.times));
+    let mut measured = of(responses.lines, &centre, 1.0);
+    let in_the_middle = measured.len();
+    measured.extend(of(responses.weaker, &centre, responses.times));
+    measured.extend(of(responses.far, responses.far_place, 1.0));
     let prior = to_unknowns(&guess.0);
-    let residuals = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured, &place);
+    let first = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured);
     let mut starts: Vec<_> = (TRANSMISSIONS.iter())
         .flat_map(|&k| GUIDES.map(|g| start(&guess.0, k, g, &measured)))
-        .map(|start| (residuals(&start).norm_squared(), start))
+        .map(|start| (first(&start).norm_squared(), start))
         .collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best = (starts.iter().take(FOLLOWED))
-        .filter_map(|(_, start)| minimise(start, STEPS, residuals))
+        .filter_map(|(_, start)| minimise(start, STEPS, first))
         .min_by(|a, b| a.cost.total_cmp(&b.cost));
-    let minimum = best.ok_or(DriveError::NoFit { percent: 100 })?;
-    let found = from_minimum(&minimum, &measured, &place);
-    if found.residual > MOST_RESIDUAL {
+    let mut minimum = best.ok_or(DriveError::NoFit { percent: 100 })?;
+    let residual = left(&minimum.at, &measured[..in_the_middle]);
+    for _ in 0..REPEATED {
+        weigh(&mut measured, &minimum.at);
+        let again = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured);
+        minimum = minimise(&minimum.at, STEPS, again).unwrap_or(minimum);
+    }
+    if residual > MOST_RESIDUAL {
         return Err(DriveError::NoFit {
-            percent: (100.0 * found.residual) as u32,
+            percent: (100.0 * residual) as u32,
         });
     }
-    Ok(found)
+    Ok(from_minimum(&minimum, measured.len(), residual))
 }
 
-fn by_torque(line: &Line, drives: &[Electrical; 3], play: f64) -> Measured {
-    let (mut response, mut deviation) =
-        (line.angle_by_current(), line.angle_by_current_deviation());
+fn by_torque<'a>(
+    line: &Line,
+    drives: &[Electrical; 3],
+    (place, play): (&'a Place, f64),
+) -> Measured<'a> {
+    let (mut response, mut noise) = (line.angle_by_current(), line.angle_by_current_deviation());
     for (i, drive) in drives.iter().enumerate() {
         response.column_mut(i).scale_mut(1.0 / drive.motor_constant);
-        deviation
-            .column_mut(i)
-            .scale_mut(1.0 / drive.motor_constant);
+        noise.column_mut(i).scale_mut(1.0 / drive.motor_constant);
     }
-    let size = response.norm() / 3.0;
     let share = play * MODEL_ERROR * (1.0 + (line.hz / GROWS_FROM_HZ).powi(2)).sqrt();
-    for (deviation, response) in deviation.iter_mut().zip(response.iter()) {
-        let left_out = share * response.norm().hypot(size);
-        *deviation = deviation.hypot(left_out);
-    }
-    Measured {
+    let mut measured = Measured {
         hz: line.hz,
+        place,
         play,
         response,
-        deviation,
+        noise,
+        deviation: noise,
+    };
+    measured.leave_out(share);
+    measured
+}
+
+impl Measured<'_> {
+    /// The model leaves out such a share of the response.
+    fn leave_out(&mut self, share: f64) {
+        let size = self.response.norm() / 3.0;
+        let entries = self.noise.iter().zip(self.response.iter());
+        for (deviation, (noise, response)) in self.deviation.iter_mut().zip(entries) {
+            *deviation = noise.hypot(share * response.norm().hypot(size));
+        }
+    }
+
+    /// What a model leaves of the response, over it.
+    fn left(&self, unknowns: &DVector<f64>) -> f64 {
+        let model = answering(unknowns, self.play).compliance(self.hz, self.place);
+        (self.response - model.ring).norm() / self.response.norm()
+    }
+
+    /// Whether a line of the same excitation is so near that it says what the model leaves out here.
+    fn is_near(&self, other: &Self) -> bool {
+        self.play == other.play
+            && std::ptr::eq(self.place, other.place)
+            && (self.hz / other.hz).ln().abs() < NEAR
+    }
+}
+
+/// Lines count by what a fit leaves of them.
+fn weigh(measured: &mut [Measured<'_>], unknowns: &DVector<f64>) {
+    let left: Vec<f64> = measured.iter().map(|line| line.left(unknowns)).collect();
+    let shares: Vec<f64> = (measured.iter().zip(&left))
+        .map(|(line, own)| {
+            let all = measured.iter().zip(&left);
+            let mut near: Vec<f64> = all
+                .filter(|(other, _)| line.is_near(other))
+                .map(|(_, left)| *left)
+                .collect();
+            near.sort_by(f64::total_cmp);
+            let median = near[near.len() / 2].max(LEAST_ERROR);
+            median.hypot(own / HALF_AT)
+        })
+        .collect();
+    for (line, share) in measured.iter_mut().zip(shares) {
+        line.leave_out(share);
     }
 }
 
 /// A guess with other springs, and with an inertia that fits what the lowest lines show.
-fn start(guess: &Chain, transmission: f64, guide: f64, measured: &[Measured]) -> DVector<f64> {
+fn start(guess: &Chain, transmission: f64, guide: f64, measured: &[Measured<'_>]) -> DVector<f64> {
     let mut chain = *guess;
     chain.stiffness *= transmission;
     chain.damping *= transmission.sqrt();
     chain.guide_stiffness *= guide;
     chain.guide_damping *= guide.sqrt();
-    let place = Place::centre();
     let low = measured
         .iter()
         .find(|line| line.hz > 60.0)
         .or(measured.first());
     if let Some(line) = low {
-        let share = (chain.compliance(line.hz, &place).ring[(0, 0)] / line.response[(0, 0)]).norm();
+        let share =
+            (chain.compliance(line.hz, line.place).ring[(0, 0)] / line.response[(0, 0)]).norm();
         for inertia in [
             &mut chain.motor_inertia,
             &mut chain.ring_inertia,
@@ -198,6 +270,8 @@ fn start(guess: &Chain, transmission: f64, guide: f64, measured: &[Measured]) ->
     to_unknowns(&chain)
 }
 
+/// [`NAMES`], what play gives way and damps, and how much more carriages hold while little moves.
+const UNKNOWNS: usize = 16;
 /// What the moments are counted in, kg m^2.
 const MOMENT: f64 = 0.01;
 
@@ -228,12 +302,12 @@ fn to_unknowns(chain: &Chain) -> DVector<f64> {
         load.inertia,
     ];
     DVector::from_iterator(
-        15,
+        UNKNOWNS,
         positive
             .map(f64::ln)
             .into_iter()
             .chain(load.moment.map(|moment| moment / MOMENT))
-            .chain([0.0; 2]),
+            .chain([0.0; 3]),
     )
 }
 
@@ -257,49 +331,46 @@ fn from_unknowns(unknowns: &DVector<f64>) -> Chain {
     }
 }
 
-/// What play gives way and damps under the excitation, over what the transmission does.
-fn play(unknowns: &DVector<f64>) -> [f64; 2] {
-    [PLAY_GIVES * unknowns[13], PLAY_DAMPS * unknowns[14]].map(|more| f64::max(0.0, more))
-}
-
-fn excited(chain: &Chain, play: [f64; 2], times: f64) -> Chain {
-    let [gives, damps] = play.map(|more| times * more);
-    chain.with_play(gives, damps)
+/// The chain as it answers to an excitation of which play gives way `play` times as much as of the first.
+fn answering(unknowns: &DVector<f64>, play: f64) -> Chain {
+    let more = |k: usize, likely: f64| play * f64::max(0.0, likely * unknowns[k]);
+    let mut chain = from_unknowns(unknowns).with_play(more(13, PLAY_GIVES), more(14, PLAY_DAMPS));
+    if play > 1.0 {
+        let sticks = (STICKS_MORE * unknowns[15]).exp();
+        chain.along_stiffness *= sticks;
+        chain.along_damping *= sticks;
+    }
+    chain
 }
 
 fn residuals(
     unknowns: &DVector<f64>,
     prior: &DVector<f64>,
-    measured: &[Measured],
-    place: &Place,
+    measured: &[Measured<'_>],
 ) -> DVector<f64> {
-    let chain = from_unknowns(unknowns);
     let mut all = Vec::with_capacity(18 * measured.len() + unknowns.len());
     for line in measured {
-        let excited = excited(&chain, play(unknowns), line.play);
-        let model = excited.compliance(line.hz, place).ring;
+        let model = (answering(unknowns, line.play).compliance(line.hz, line.place)).ring;
         for k in 0..9 {
             let off = (line.response[k] - model[k]) / line.deviation[k];
             all.extend([off.re, off.im]);
         }
     }
     all.extend((0..11).map(|k| (unknowns[k] - prior[k]) / Guess::SPREAD));
-    all.extend([11, 12, 13, 14].map(|k| unknowns[k]));
+    all.extend((11..UNKNOWNS).map(|k| unknowns[k]));
     DVector::from_vec(all)
 }
 
-fn from_minimum(minimum: &Minimum, measured: &[Measured], place: &Place) -> Mechanical {
-    let (chain, play) = (from_unknowns(&minimum.at), play(&minimum.at));
-    let excited = excited(&chain, play, 1.0);
-    let of_excited = || measured.iter().filter(|line| line.play <= 1.0);
-    let left: f64 = of_excited()
-        .map(|line| {
-            let off = line.response - excited.compliance(line.hz, place).ring;
-            off.norm_squared() / line.response.norm_squared()
-        })
-        .sum();
+/// What a model leaves of all responses, over them: root of the mean square.
+fn left(unknowns: &DVector<f64>, measured: &[Measured<'_>]) -> f64 {
+    let squares = measured.iter().map(|line| line.left(unknowns).powi(2));
+    f64::sqrt(squares.sum::<f64>() / measured.len() as f64)
+}
+
+fn from_minimum(minimum: &Minimum, lines: usize, residual: f64) -> Mechanical {
+    let (chain, excited) = (from_unknowns(&minimum.at), answering(&minimum.at, 1.0));
     // Residuals are larger than what deviations say by what the model does not know.
-    let grown = (minimum.cost / (18.0 * measured.len() as f64)).max(1.0);
+    let grown = (minimum.cost / (18.0 * lines as f64)).max(1.0);
     let covariance = &minimum.covariance * grown;
     let variance = |k: usize| covariance[(k, k)].max(0.0);
     let [motor, ring] = [chain.motor_inertia, chain.ring_inertia];
@@ -312,7 +383,7 @@ fn from_minimum(minimum: &Minimum, measured: &[Measured], place: &Place) -> Mech
         deviations: (0..13)
             .map(|k| variance(k).sqrt() * if k < 11 { 1.0 } else { MOMENT })
             .collect(),
-        residual: f64::sqrt(left / of_excited().count() as f64),
+        residual,
         drive_inertia_deviation: sum.max(0.0).sqrt() / (motor + ring),
     }
 }

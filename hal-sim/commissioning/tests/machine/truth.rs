@@ -14,6 +14,9 @@ use std::f64::consts::TAU;
 /// Resistances of the windings as their pulses had them, roughly: what the motor constants are found with.
 const ROUGH_OHM: f64 = 1.02;
 
+/// Where what is moved is told apart, track radii.
+const FAR_OUT: f64 = 0.7;
+
 pub struct Identified {
     pub excited: Excited,
     pub lines: Vec<Line>,
@@ -48,10 +51,19 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
     };
     let weaker = excite(parameters, &weaker);
     let weaker = frequency_response(&weaker.runs, &TIMING).expect("there are responses");
+    let far = Plan {
+        pose: [FAR_OUT * parameters.plant.track_radius_m, 0.0, 0.0],
+        periods: 2,
+        ..*plan
+    };
+    let far = excite(parameters, &far);
+    let far = frequency_response(&far.runs, &TIMING).expect("there are responses");
     let responses = Responses {
         lines: &lines,
         weaker: &weaker,
         times: WEAKER,
+        far: &far,
+        far_place: &Place::new(FAR_OUT, 0.0).expect("inside"),
     };
     let model = drive_model(&excited.runs, &responses, &TIMING, &known).expect("there is a model");
     Identified {

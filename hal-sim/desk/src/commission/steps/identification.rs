@@ -1,11 +1,14 @@
-//! The numbers of drives and platform, from multisines on one motor after the other while the platform turns in the middle.
+//! The numbers of drives and platform, from multisines on one motor after the other while the platform turns in the middle, and far out.
 
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
-use crate::commission::sines::{CENTRE, Excited, GENTLE_V, PEAK_V, Recorded, WEAKER, excite};
+use crate::commission::measured_loop::place;
+use crate::commission::sines::{
+    CENTRE, Excited, FAR_OUT, GENTLE_V, PEAK_V, Recorded, WEAKER, excite,
+};
 use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::{
     DriveError, DriveModel, Guess, Known as Before, Mechanical, Responses, drive_model,
@@ -19,6 +22,7 @@ const PERIODS: usize = 3;
 const SETS_OF_LOAD: u32 = 2;
 const PERIODS_OF_LOAD: usize = 2;
 const SETS_OF_WEAKER: u32 = 2;
+const SETS_FAR_OUT: u32 = 2;
 /// Lines that the model follows, Hz.
 const TO_HZ: f64 = 2_300.0;
 /// Least share of what an encoder shows that answers to its own drive, up to a frequency.
@@ -49,7 +53,11 @@ pub(super) fn run(
         ));
         identified = identify(bench, known, GENTLE_V)?;
     }
-    let Identified { excited, model } = identified;
+    let Identified {
+        excited,
+        far,
+        model,
+    } = identified;
     let quality = quality(&excited.lines);
     found.push(Finding::new(
         format!("share of the angles that answers to the drive, up to {QUALITY_TO_HZ:.0} Hz"),
@@ -64,13 +72,15 @@ pub(super) fn run(
     };
     tell_drives(bench, known, found, &model)?;
     tell_platform(bench, found, &model.mechanical)?;
-    (known.model, known.centre) = (Some(model), Some(excited));
+    known.model = Some(model);
+    known.excited = vec![(CENTRE, excited), (FAR_OUT, far)];
     Ok(())
 }
 
 /// What was recorded, and the model of it.
 struct Identified {
     excited: Excited,
+    far: Excited,
     model: Result<DriveModel, DriveError>,
 }
 
@@ -86,6 +96,7 @@ fn identify(
         (SETS, PERIODS)
     };
     let excited = excite(bench, &CENTRE, (sets, peak_v), Recorded::Drives { periods })?;
+    let far = excite(bench, &FAR_OUT, (SETS_FAR_OUT, peak_v), Recorded::Loop)?;
     let weaker = (SETS_OF_WEAKER, peak_v / WEAKER);
     let weaker = excite(bench, &CENTRE, weaker, Recorded::Loop)?;
     let before = Before {
@@ -94,13 +105,26 @@ fn identify(
         guess: Guess::STAGE,
         to_hz: TO_HZ,
     };
+    let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
+    let Some(far_place) = place(&FAR_OUT, radius_m) else {
+        return fail(
+            format!("{} is outside of the track", FAR_OUT.words()),
+            "the track's radius, a parameter, is too small",
+        );
+    };
     let responses = Responses {
         lines: &excited.lines,
         weaker: &weaker.lines,
         times: WEAKER,
+        far: &far.lines,
+        far_place: &far_place,
     };
     let model = drive_model(&excited.runs, &responses, &Timing::STAGE, &before);
-    Ok(Identified { excited, model })
+    Ok(Identified {
+        excited,
+        far,
+        model,
+    })
 }
 
 /// Sets the largest voltage of an excitation, which takes a servo that is off.

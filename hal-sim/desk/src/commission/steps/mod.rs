@@ -86,7 +86,7 @@ pub static STEPS: &[Step] = &[
     },
     Step {
         name: "identification",
-        about: "sines on one motor after the other while the platform turns in the middle: windings, inertias, mass, resonances",
+        about: "sines on one motor after the other while the platform turns in the middle, and far out: windings, inertias, mass, resonances",
         run: identification::run,
     },
     Step {

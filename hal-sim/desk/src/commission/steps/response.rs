@@ -24,15 +24,16 @@ pub(super) fn run(
             "begin with the step `identification`",
         );
     };
-    let peak_v = (known.centre.as_ref()).map_or(PEAK_V, |excited| excited.peak_v);
+    let peak_v = (known.excited.first()).map_or(PEAK_V, |(_, excited)| excited.peak_v);
     allow(bench, peak_v)?;
     known.loops.clear();
     let gains = servo_gains::read(bench)?;
     let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
+    let excited = std::mem::take(&mut known.excited);
     for spot in [CENTRE, FAR_OUT] {
-        let measured = match known.centre.take() {
-            Some(excited) if spot == CENTRE => MeasuredLoop::new(&excited, spot, &model),
-            _ => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
+        let measured = match excited.iter().find(|(place, _)| *place == spot) {
+            Some((_, excited)) => MeasuredLoop::new(excited, spot, &model),
+            None => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
         };
         found.push(told(&measured));
         measured.tell_numbers(found);
