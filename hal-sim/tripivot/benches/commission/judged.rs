@@ -17,23 +17,41 @@ pub type Figures = Vec<(&'static str, f64)>;
 /// Resonances over this are beyond what any servo here reaches.
 const REACHED_HZ: f64 = 1_500.0;
 
-/// How warm the windings were when they were measured, K, by ring.
+/// How warm the windings were when they were measured, K, by ring: in the mean over the step, as their currents show it (by their squares).
 #[derive(Default)]
 pub struct Warmth {
-    now: Rc<Cell<[f64; 3]>>,
+    now: Rc<Cell<[Mean; 3]>>,
     noted: Cell<[f64; 3]>,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Mean {
+    weighted: f64,
+    weights: f64,
 }
 
 impl Warmth {
     pub fn watch(&self) -> EachTick {
         let now = Rc::clone(&self.now);
-        Box::new(move |host, _| now.set(host.stage.plant.windings_warmer_k()))
+        Box::new(move |host, _| {
+            let plant = &host.stage.plant;
+            let (warmer_k, current_a) = (plant.windings_warmer_k(), plant.currents_a());
+            let mut means = now.get();
+            for (i, mean) in means.iter_mut().enumerate() {
+                let weight = current_a[i] * current_a[i];
+                mean.weighted += weight * warmer_k[i];
+                mean.weights += weight;
+            }
+            now.set(means);
+        })
     }
 
     /// After a step.
     pub fn note(&self, step: &str) {
+        let means = self.now.take();
         if step == "identification" {
-            self.noted.set(self.now.get());
+            self.noted
+                .set(means.map(|mean| mean.weighted / mean.weights));
         }
     }
 }
