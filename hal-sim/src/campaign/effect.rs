@@ -6,7 +6,7 @@ use super::excited::{Excited, way_counts};
 use super::injection::{HEARTBEAT_TICKS, Injection, MISSED_EVERY, second};
 use super::inputs::is_bad;
 use super::scenario::Scenario;
-use super::swings::Swings;
+use super::swings::{Slowed, Swings};
 use super::truth::{Subdivided, most_lead_rad, setpoint_turns, shown_errors_rad};
 use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
@@ -221,8 +221,7 @@ pub struct Effects<'a> {
     risen: [u64; 2],
     currents: [Current; AXES],
     swings: [[Swings; 4]; AXES],
-    /// Voltages of the two ticks before.
-    volts_before: [[f64; 2]; AXES],
+    slow_volts: [Slowed; AXES],
 }
 
 impl<'a> Effects<'a> {
@@ -258,7 +257,7 @@ impl<'a> Effects<'a> {
             risen: [0; 2],
             currents: [Current::NONE; AXES],
             swings: [const { [const { Swings::NONE }; 4] }; AXES],
-            volts_before: [[0.0; 2]; AXES],
+            slow_volts: [Slowed::default(); AXES],
         }
     }
 
@@ -320,11 +319,7 @@ impl<'a> Effects<'a> {
             let asked_v = rate_rad_s * self.parameters.servo.gains[i].velocity_v_s_rad;
             // What may be one counts at any rate, what has to be found only where the setpoint hardly moves.
             let may = now.is_driven;
-            // A loop with a dead time of 72 us and an integrator does not oscillate from 3.5 kHz on. What is faster is driven, as by errors within the
-            // periods of a scale that are made up for at wrong places; the mean of three ticks takes it out.
-            let [before, last] = self.volts_before[i];
-            let slow_volts = (before + last + volts) / 3.0;
-            self.volts_before[i] = [last, volts];
+            let slow_volts = self.slow_volts[i].take(volts);
             let seen = [
                 (slow_volts, SWING_V[0], may && is_slow),
                 (slow_volts, SWING_V[0], may),

@@ -128,6 +128,16 @@ fn gears_whose_teeth_lift_are_measured_more_gently() {
     let _ = std::fs::remove_dir_all(&folder);
 }
 
+/// Light on stiff guides: in the middle of the disk alone a motor's inertia, mass and inertia of the platform could each be off by a half.
+#[test]
+fn what_is_moved_is_told_apart_far_out() {
+    let (output, folder) = commission("light", &["--unknown", "155"]);
+    let told = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    finds_gains(&told);
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
 /// The folder with what its controller keeps.
 fn brings_up(seed: u64, how: &[&str], most: &Most) -> PathBuf {
     let machine = unknown(seed);
@@ -280,9 +290,7 @@ fn finds_what_is_moved(machine: &StageParameters, told: &str) {
         ("mass of platform and load", mass, 0.0086),
         ("inertia about the platform's centre", inertia, 0.0088),
     ] {
-        let off = error(told, name, truth * torque);
-        println!("{name}: {:+.2} %", 100.0 * off);
-        assert!(off.abs() < most, "{name}");
+        assert!(error(told, name, truth * torque).abs() < most, "{name}");
     }
 }
 

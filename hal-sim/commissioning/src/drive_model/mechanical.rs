@@ -164,15 +164,15 @@ pub fn mechanical(
         .min_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut minimum = best.ok_or(DriveError::NoFit { percent: 100 })?;
     let residual = left(&minimum.at, &measured[..in_the_middle]);
-    for _ in 0..REPEATED {
-        weigh(&mut measured, &minimum.at);
-        let again = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured);
-        minimum = minimise(&minimum.at, STEPS, again).unwrap_or(minimum);
-    }
     if residual > MOST_RESIDUAL {
         return Err(DriveError::NoFit {
             percent: (100.0 * residual) as u32,
         });
+    }
+    for _ in 0..REPEATED {
+        weigh(&mut measured, &minimum.at);
+        let again = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured);
+        minimum = minimise(&minimum.at, STEPS, again).unwrap_or(minimum);
     }
     Ok(from_minimum(&minimum, measured.len(), residual))
 }
