@@ -153,15 +153,17 @@ impl Viewer {
     /// The next message that `wanted` knows.
     pub fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         let end = Instant::now() + PATIENCE;
+        let mut last = Value::Null;
         while Instant::now() < end {
             if let Message::Text(text) = self.socket.read().unwrap() {
                 let message = serde_json::from_str(&text).unwrap();
                 if wanted(&message) {
                     return message;
                 }
+                last = message;
             }
         }
-        panic!("waited in vain");
+        panic!("waited in vain; the last message: {last}");
     }
 
     pub fn send(&mut self, text: &str) {

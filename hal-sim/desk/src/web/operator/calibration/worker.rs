@@ -99,12 +99,11 @@ impl Worker {
             self.journal.note(&who, &format!("{what}…"), &said);
             let unfinished = |measurement: &Measurement| !measurement.is_whole();
             let may_resume = self.measurement.as_ref().is_some_and(unfinished);
-            self.told.ends(good, said, |status| {
+            self.told.ends(&self.reach.control, good, said, |status| {
                 (status.may_resume, status.may_apply) = (may_resume, self.made.is_some());
                 status.rests();
             });
             self.files.keep_plots(&self.told.plots());
-            self.reach.control.over();
         }
     }
 

@@ -47,9 +47,9 @@ impl Worker {
                 Err(said) => (false, said),
             };
             self.journal.note(&ordered.who, &format!("{what}…"), &said);
-            self.told.ends(good, said, Status::rests);
+            self.told
+                .ends(&self.reach.control, good, said, Status::rests);
             self.files.keep_plots(&self.told.plots());
-            self.reach.control.over();
         }
     }
 

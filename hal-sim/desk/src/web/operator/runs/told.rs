@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 use tokio::sync::watch;
 
+use super::control::Control;
 use crate::web::bridge::json;
 
 /// To a page whose order meets another that is under way.
@@ -82,8 +83,9 @@ impl<S: OfRun> Told<S> {
         });
     }
 
-    /// It is over; `change`: what else is.
-    pub fn ends(&self, good: bool, said: String, change: impl FnOnce(&mut S)) {
+    /// It is over; `change`: what else is. Whoever is told so may give the next order at once: the way is free before.
+    pub fn ends(&self, control: &Control, good: bool, said: String, change: impl FnOnce(&mut S)) {
+        control.over();
         self.change(|status| {
             let run = status.run();
             (run.runs, run.good, run.said) = (false, good, said);
@@ -105,5 +107,32 @@ impl<S: OfRun> Told<S> {
                 };
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize)]
+    struct Status {
+        run: Run,
+    }
+
+    impl OfRun for Status {
+        fn run(&mut self) -> &mut Run {
+            &mut self.run
+        }
+    }
+
+    #[test]
+    fn what_is_told_to_be_over_is_in_nobodys_way() {
+        let run = Run::default();
+        let (told, control) = (Told::new(Status { run }), Control::default());
+        assert!(control.begin(1));
+        told.begins("one", |_| ());
+        let ended = |_: &mut Status| assert!(control.begin(2), "not told yet, and free");
+        told.ends(&control, true, "done".to_owned(), ended);
+        assert!(!told.status().run.runs);
     }
 }
