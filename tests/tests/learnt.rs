@@ -1,10 +1,11 @@
 //! What the servos learn: over a restart, used from the first move on; at the highest gain that is allowed; and where there is nothing
 //! to be learnt.
 
+use commissioning::tuning::IDENTIFIED_LEARNING;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, run_machine, stage_parameters};
 use hal_sim::rig::script::Script;
-use hal_sim::rig::{IDENTIFIED_LEARNING, with_drives_told, with_ripple_told};
+use hal_sim::rig::{with_drives_told, with_ripple_told};
 use tests::Bench;
 
 const MOVES: [&str; 3] = [

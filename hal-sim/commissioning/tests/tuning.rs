@@ -5,7 +5,7 @@ use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
 use commissioning::tuning::{
-    Gains, Limits, MOST_MS, Margins, PLACES, PivotGains, Plant, SEARCHED, Tuned, margins,
+    Gains, Limits, MOST_MS, Margins, PLACES, PivotGains, Plant, SEARCHED, Sought, Tuned, margins,
     sensitivity, tune,
 };
 use firmware::motion::{Constraints, plan_line};
@@ -203,13 +203,18 @@ fn predicted_loops_are_those_that_the_program_has() {
 
 /// Gains for plants of a model, scheduled for what it carries in the middle.
 fn tuned(
-    plants: [&[Plant]; 2],
+    [found, may_be]: [&[Plant]; 2],
     (chain, electrical): &(Chain, [Electrical; 3]),
     limits: &Limits,
 ) -> Tuned {
     let centre = Place::centre();
     let (resonances_hz, inertia) = (chain.resonances_hz(&centre), chain.inertia(&centre)[(0, 0)]);
-    tune(plants, electrical, &resonances_hz, inertia, &TIMING, limits).expect("there are gains")
+    let sought = Sought {
+        found,
+        may_be,
+        elsewhere: &[],
+    };
+    tune(sought, electrical, &resonances_hz, inertia, &TIMING, limits).expect("there are gains")
 }
 
 #[test]

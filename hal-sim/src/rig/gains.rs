@@ -6,7 +6,7 @@ use commissioning::chain::{Chain, Load, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
 use commissioning::tuning::{
-    Gains, Limits, MOST_MS, PLACES, PivotGains, Plant, SEARCHED, rest_stiffness, tune,
+    Gains, Limits, MOST_MS, PLACES, PivotGains, Plant, SEARCHED, Sought, rest_stiffness, tune,
 };
 use firmware::control::servo::{BorneLimits, ServoConfig, carried_inertia};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch, Parameters};
@@ -76,7 +76,11 @@ pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Par
     let (chain, electrical) = &model;
     let centre = Place::centre();
     let tuned = tune(
-        [&plants(&model, &PLACES[..SEARCHED]), &[]],
+        Sought {
+            found: &plants(&model, &PLACES[..SEARCHED]),
+            may_be: &[],
+            elsewhere: &plants(&model, &PLACES[SEARCHED..]),
+        },
         electrical,
         &chain.resonances_hz(&centre),
         chain.inertia(&centre)[(0, 0)],

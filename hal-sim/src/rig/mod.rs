@@ -36,7 +36,7 @@ pub use gains::{
     with_reference_gains,
 };
 pub use told::{
-    IDENTIFIED_LEARNING, Told, with_drives_told, with_gear_errors_told, with_guides_told,
-    with_inertia_scheduled, with_machine_told, with_payload_told, with_ripple_told,
-    with_subdivision_told, with_wiring_told,
+    Told, with_drives_told, with_gear_errors_told, with_guides_told, with_inertia_scheduled,
+    with_machine_told, with_payload_told, with_ripple_told, with_subdivision_told,
+    with_wiring_told,
 };

@@ -3,6 +3,7 @@
 use super::calibrated::calibration_told;
 use super::gains::{with_gains_tuned, with_motion_fitted, with_reference_gains};
 use crate::machine::devices::{COUNTS_PER_TURN, StageParameters};
+use commissioning::tuning::IDENTIFIED_LEARNING;
 use firmware::calibration::MachineCalibration;
 use firmware::control::servo::{ServoConfig, carried_inertia};
 use firmware::parameters::{
@@ -243,9 +244,6 @@ pub fn with_subdivision_told(parameters: &Parameters, stage: &StageParameters) -
     }
     told
 }
-
-/// Share of the integral gain with which an identified machine learns what changes: more would answer to the motors' ripple.
-pub const IDENTIFIED_LEARNING: f64 = 0.25;
 
 /// All of it but the ripple, and a learning for what is left.
 #[must_use]

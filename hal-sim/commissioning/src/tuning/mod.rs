@@ -68,6 +68,10 @@ impl Limits {
     };
 }
 
+/// Share of the integral gain with which an identified machine learns what changes (parameter 0x54500303). What is learnt while it turns acts as so
+/// much more integral, which no gains here are sought with, and answers to the motors' ripple.
+pub const IDENTIFIED_LEARNING: f64 = 0.25;
+
 /// Gains, and what they are predicted to give at the worst place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
@@ -75,6 +79,17 @@ pub struct Tuned {
     pub gains: Gains,
     /// Worst of all places and loads.
     pub margins: Margins,
+}
+
+/// What gains are sought on.
+#[derive(Clone, Copy, Debug)]
+pub struct Sought<'a> {
+    /// The machine as it was found, at places that differ much.
+    pub found: &'a [Plant],
+    /// What it may be as well, there.
+    pub may_be: &'a [Plant],
+    /// Both at places that differ little from those: searched on only if what is found does not keep [`MOST_MS`] there.
+    pub elsewhere: &'a [Plant],
 }
 
 /// Why there are no gains.
@@ -126,24 +141,26 @@ const UNSTABLE: f64 = 100.0;
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
 type Shape = [f64; 8];
 
-/// Gains for plants at several places and with several loads, and for those that they may be as well: valleys are sought on the first, which takes
-/// less time and does not get lost; the last search, and what is found, keeps the limits on all. `resonances_hz`: where the first two notches are
-/// tried, from the model in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are for, or 0.
+/// Gains for plants at several places and with several loads, and for those that they may be as well: valleys are sought on those that were found,
+/// which takes less time and does not get lost; the last search, and what is found, keeps the limits on all. `resonances_hz`: where the first two
+/// notches are tried, from the model in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are
+/// for, or 0.
 ///
 /// # Errors
 /// [`TuningError`].
 pub fn tune(
-    [plants, as_they_may_be]: [&[Plant]; 2],
+    sought: Sought<'_>,
     electrical: &[Electrical; 3],
     resonances_hz: &[f64],
     scheduled_inertia_kg_m2: f64,
     timing: &Timing,
     limits: &Limits,
 ) -> Result<Tuned, TuningError> {
-    if plants.is_empty() {
+    if sought.found.is_empty() {
         return Err(TuningError::NoPlant);
     }
-    let all = [plants, as_they_may_be].concat();
+    let here = [sought.found, sought.may_be].concat();
+    let everywhere = [&here, sought.elsewhere].concat();
     let on = |plants| Search {
         plants,
         electrical,
@@ -151,7 +168,7 @@ pub fn tune(
         tick_s: timing.tick_s,
         limits,
     };
-    let (first, last) = (on(plants), on(&all));
+    let (first, last, whole) = (on(sought.found), on(&here), on(&everywhere));
     let starts: Vec<_> = (starts(resonances_hz).into_iter())
         .filter_map(|shape| Some((shape, first.best_velocity(&shape, falling(VELOCITY[1]))?)))
         .collect();
@@ -161,15 +178,18 @@ pub fn tune(
         .map(|(shape, found)| evolve(&unknowns(shape, found), &FIRST, |at| first.cost(at)))
         .collect();
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let ended = (found.into_iter().take(ENDED)).map(|(start, _)| {
-        let (at, _) = evolve(&start, &LAST, |at| last.cost(at));
-        (shape_of(&at), velocity_of(&at))
-    });
-    let found = (ended.chain(best_start.map(|(shape, _)| (*shape, VELOCITY[1]))))
-        .filter_map(|(shape, velocity)| last.best_velocity(&shape, falling(ABOVE * velocity)))
-        .min_by(|a, b| last.loss(a).total_cmp(&last.loss(b)))
-        .ok_or(TuningError::NotEvenSmall)?;
-    let mut gains = found.gains;
+    let ended = (found.into_iter().take(ENDED))
+        .map(|(start, _)| end(&evolve(&start, &LAST, |at| last.cost(at)).0));
+    let ended = ended.chain(best_start.map(|(shape, _)| (*shape, VELOCITY[1])));
+    let (shape, mut tuned) = last.best(ended).ok_or(TuningError::NotEvenSmall)?;
+    let all = whole.margins(&tuned.gains);
+    if !(all.is_stable && all.ms <= MOST_MS) {
+        // A load that is off the centre swings otherwise at every place: slower gains of this shape may be far from the best that keep Ms there.
+        let (at, _) = evolve(&unknowns(&shape, &tuned), &LAST, |at| whole.cost(at));
+        let everywhere = whole.best([end(&at)]);
+        tuned = everywhere.map_or(tuned, |(_, tuned)| tuned);
+    }
+    let mut gains = tuned.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
     let margins = last.margins(&gains);
     Ok(Tuned { gains, margins })
@@ -220,6 +240,11 @@ fn unknowns(shape: &Shape, found: &Tuned) -> DVector<f64> {
 
 fn shape_of(unknowns: &DVector<f64>) -> Shape {
     std::array::from_fn(|k| unknowns[k].exp())
+}
+
+/// Shape and velocity gain at which a search has ended.
+fn end(at: &DVector<f64>) -> (Shape, f64) {
+    (shape_of(at), velocity_of(at))
 }
 
 fn velocity_of(unknowns: &DVector<f64>) -> f64 {
@@ -331,6 +356,18 @@ impl Search<'_> {
         let corners = [position_1_s, integral_v_rad / velocity_v_s_rad];
         let tails: f64 = corners.map(|corner| over(TAIL_UNDER, corner)).iter().sum();
         tuned.margins.rejection.ln() + self.limits.tail * tails
+    }
+
+    /// The best of these shapes, each with the largest velocity gain that keeps the limits.
+    fn best(&self, ends: impl IntoIterator<Item = (Shape, f64)>) -> Option<(Shape, Tuned)> {
+        ends.into_iter()
+            .filter_map(|(shape, velocity)| {
+                Some((
+                    shape,
+                    self.best_velocity(&shape, falling(ABOVE * velocity))?,
+                ))
+            })
+            .min_by(|(_, a), (_, b)| self.loss(a).total_cmp(&self.loss(b)))
     }
 
     /// The largest velocity gain that keeps the limits, from the first of these down. Where a resonance is only held at higher gains, smaller ones

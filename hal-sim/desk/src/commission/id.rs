@@ -13,6 +13,8 @@ pub const SCALE_PERIODS: u32 = 0x5450_0E10;
 pub const POSITION_GAIN: u32 = 0x5450_0300;
 pub const VELOCITY_GAIN: u32 = 0x5450_0301;
 pub const INTEGRAL_GAIN: u32 = 0x5450_0302;
+/// How fast feedforward learns, as a share of the integral gain.
+pub const LEARNING: u32 = 0x5450_0303;
 /// Inertia that gains are scheduled by; 0: they are not.
 pub const SCHEDULED_INERTIA: u32 = 0x5450_0306;
 pub const REST_STIFFNESS: u32 = 0x5450_0308;

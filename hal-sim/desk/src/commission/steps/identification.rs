@@ -15,6 +15,7 @@ use commissioning::drive_model::{
 };
 use commissioning::frequency_response::Line;
 use commissioning::record::Timing;
+use commissioning::tuning::IDENTIFIED_LEARNING;
 
 /// Sets of lines, and periods of each; fewer where the drives are known and only the load is another.
 const SETS: u32 = 3;
@@ -286,6 +287,7 @@ fn set_platform(
         (id::PAYLOAD_INERTIA, 0.0),
         (id::PAYLOAD_X, x_m * 1e3),
         (id::PAYLOAD_Y, y_m * 1e3),
+        (id::LEARNING, IDENTIFIED_LEARNING),
     ])?;
     Ok(())
 }

@@ -12,7 +12,7 @@ use crate::record::RecordError;
 use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::DriveModel;
 use commissioning::record::Timing;
-use commissioning::tuning::{Gains, Limits, MOST_MS, PLACES, Plant, SEARCHED, tune};
+use commissioning::tuning::{Gains, Limits, MOST_MS, PLACES, Plant, SEARCHED, Sought, tune};
 
 /// What gains are lowered by that the stage does not bear.
 const NOT_BORNE: f64 = 0.92 * 0.92;
@@ -101,12 +101,17 @@ impl<'a> Search<'a> {
         let at_places = |chain| {
             Plant::at_places(&self.model.electrical, chain, places, &Timing::STAGE).into_iter()
         };
-        let as_found = at_places(&self.chain).chain(self.measured.iter().cloned());
         let as_it_may_be = self.chain.as_it_may_be();
         [
-            as_found.collect(),
+            at_places(&self.chain).collect(),
             as_it_may_be.iter().flat_map(at_places).collect(),
         ]
+    }
+
+    /// All that gains have to be sound on.
+    fn all(&self) -> Vec<Plant> {
+        let [as_found, as_it_may_be] = self.plants(&PLACES);
+        [as_found, as_it_may_be, self.measured.clone()].concat()
     }
 
     /// Gains to try, the most promising first: those of the search, and the former ones. All are slowed until the model at every place and the
@@ -114,15 +119,20 @@ impl<'a> Search<'a> {
     fn candidates(&self, former: &Gains) -> Vec<Gains> {
         let centre = Place::centre();
         let [as_found, as_it_may_be] = self.plants(&PLACES[..SEARCHED]);
+        let elsewhere = self.plants(&PLACES[SEARCHED..]).concat();
         let tuned = tune(
-            [&as_found, &as_it_may_be],
+            Sought {
+                found: &[&as_found[..], &self.measured].concat(),
+                may_be: &as_it_may_be,
+                elsewhere: &elsewhere,
+            },
             &self.model.electrical,
             &self.chain.resonances_hz(&centre),
             self.chain.inertia(&centre)[(0, 0)],
             &Timing::STAGE,
             &Limits::WITH_FRICTION,
         );
-        let all = self.plants(&PLACES).concat();
+        let all = self.all();
         let mut candidates: Vec<_> = (tuned.ok().map(|tuned| tuned.gains).into_iter())
             .chain([*former])
             .filter_map(|gains| gains.slowed_until_sound(&all, MOST_MS, Timing::STAGE.tick_s))
@@ -186,7 +196,7 @@ impl<'a> Search<'a> {
     /// Gains slowed until they keep Ms, where they are faster than others still. The lines of a measured loop lie far apart: a resonance between two of
     /// them only the model shows.
     fn sound_and_faster(&self, gains: &Gains, others: &Gains) -> Option<Gains> {
-        let all = self.plants(&PLACES).concat();
+        let all = self.all();
         let (sound, _) = gains.slowed_until_sound(&all, MOST_MS, Timing::STAGE.tick_s)?;
         (sound.least_velocity_v_s_rad() > others.least_velocity_v_s_rad()).then_some(sound)
     }
