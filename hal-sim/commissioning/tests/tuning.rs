@@ -204,16 +204,25 @@ fn predicted_loops_are_those_that_the_program_has() {
 /// Gains for plants of a model, scheduled for what it carries in the middle.
 fn tuned(
     [found, may_be]: [&[Plant]; 2],
+    model: &(Chain, [Electrical; 3]),
+    limits: &Limits,
+) -> Tuned {
+    let elsewhere = &[];
+    let sought = Sought {
+        found,
+        may_be,
+        elsewhere,
+    };
+    sought_for(sought, model, limits)
+}
+
+fn sought_for(
+    sought: Sought<'_>,
     (chain, electrical): &(Chain, [Electrical; 3]),
     limits: &Limits,
 ) -> Tuned {
     let centre = Place::centre();
     let (resonances_hz, inertia) = (chain.resonances_hz(&centre), chain.inertia(&centre)[(0, 0)]);
-    let sought = Sought {
-        found,
-        may_be,
-        elsewhere: &[],
-    };
     tune(sought, electrical, &resonances_hz, inertia, &TIMING, limits).expect("there are gains")
 }
 
@@ -273,6 +282,38 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
     let uncertain = at_worst(&chain.as_it_may_be().map(|chain| at_places(&chain)).concat());
     println!("Ms for the model as it stands {certain:.2}, as it may be {uncertain:.2}");
     assert!(uncertain < MOST_MS && certain > MOST_MS);
+}
+
+/// A load that is off the centre: where gains for two places do not keep Ms at the others, they are sought there as well, and reject more than
+/// slower ones of the same shape.
+#[test]
+fn gains_are_for_places_that_were_not_searched_as_well() {
+    let (chain, electrical) = loop_model(&hal_sim::machine::unknown(30));
+    let at = |places: &[[f64; 2]]| {
+        let of = |chain: &Chain| Plant::at_places(&electrical, chain, places, &TIMING);
+        [
+            of(&chain),
+            chain.as_it_may_be().iter().flat_map(of).collect(),
+        ]
+    };
+    let [found, may_be] = &at(&PLACES[..SEARCHED]);
+    let elsewhere = at(&PLACES[SEARCHED..]).concat();
+    let all = [found, may_be, &elsewhere[..]].concat();
+    let ms_and_rejection = |elsewhere: &[Plant]| {
+        let sought = Sought {
+            found,
+            may_be,
+            elsewhere,
+        };
+        let gains = sought_for(sought, &(chain, electrical), &Limits::WITH_FRICTION).gains;
+        let margins = gains.at_worst(&all, TIMING.tick_s).expect("a plant");
+        let slowed = gains.slowed_until_sound(&all, MOST_MS, TIMING.tick_s);
+        (margins.ms, slowed.expect("gains").1.rejection)
+    };
+    let (without, with) = (ms_and_rejection(&[]), ms_and_rejection(&elsewhere));
+    println!("Ms, and S(30 Hz) once slowed: {without:.3?}, with all places {with:.3?}");
+    assert!(without.0 > MOST_MS && with.0 < MOST_MS);
+    assert!(with.1 < 0.85 * without.1);
 }
 
 impl Compared {

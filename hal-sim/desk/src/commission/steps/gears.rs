@@ -18,6 +18,8 @@ const REACHED_S: f64 = 0.7;
 /// Rows of a record, which is of a quarter turn of the platform.
 const ROWS: usize = 2_000;
 const TURN_RAD: f64 = 0.25 * TAU;
+/// How often the fastest are measured once more, both ways.
+const AGAIN: usize = 4;
 /// An error that is not so many of its standard deviations is none that is known.
 const LEAST_SURE: f64 = 5.0;
 
@@ -48,11 +50,11 @@ pub(super) fn run(
         tell(found, &roughly.gears);
         return Ok(bench.set(&before)?);
     }
-    // Once more with that in force: rings that move less beside the steady motion tell apart what that asks for. Twice both ways: one quarter turn
-    // has its own friction.
+    // Once more with that in force: rings that move less beside the steady motion tell apart what that asks for. Several times both ways: one
+    // quarter turn has its own friction.
     bench.set(&values(&roughly.gears, &sure))?;
     let fast = [rates[0], rates[3]];
-    let gently = gears.find(bench, &[fast, fast].concat(), &mut turnings)?;
+    let gently = gears.find(bench, &[fast; AGAIN].concat(), &mut turnings)?;
     still(bench)?;
     tell(found, &gently.gears);
     bench.set(&values(&gently.gears, &sure))?;
