@@ -88,17 +88,21 @@ struct Most {
     left_within_periods_urad: f64,
     /// And of the following error once a turn of a motor, with gears made up for.
     left_of_gears_urad: f64,
+    /// And of what is slow, S(30 Hz), at the worse place.
+    rejection: f64,
 }
 
 const WITH_JIG: Most = Most {
     seconds: 300.0,
     left_within_periods_urad: 0.0111,
     left_of_gears_urad: 2.52,
+    rejection: 0.112,
 };
 const WITHOUT_JIG: Most = Most {
     seconds: 420.0,
     left_within_periods_urad: 0.0187,
     left_of_gears_urad: 0.575,
+    rejection: 0.13,
 };
 
 #[test]
@@ -153,7 +157,7 @@ fn brings_up(seed: u64, how: &[&str], most: &Most) -> PathBuf {
     finds_what_is_moved(&machine, &told);
     finds_the_gears(&machine, &told, most.left_of_gears_urad);
     finds_the_guides(&machine, &told);
-    finds_gains(&told);
+    assert!(finds_gains(&told) < most.rejection, "{told}");
     ends_in_time(&told, most.seconds);
     finds_limits(&machine, &told);
     assert!(folder.join("settings.flash").exists());
@@ -330,19 +334,22 @@ fn finds_the_guides(machine: &StageParameters, told: &str) {
     assert!(friction.abs() < 0.0147 && stiffness.abs() < 0.008, "{told}");
 }
 
-/// Margins as they were measured with the gains that were found; and the sensitivity at 30 Hz, where the gains before were sound too, is less.
-fn finds_gains(told: &str) {
-    let (mut sound, mut better) = (true, false);
+/// Margins as they were measured with the gains that were found; and the sensitivity at 30 Hz, where the gains before were sound too, is less. The worse
+/// one of that.
+fn finds_gains(told: &str) -> f64 {
+    let (mut sound, mut better, mut worst) = (true, false, 0.0);
     for place in ["in the middle", "at X 70 Y 0"] {
         let ms: Vec<f64> = numbers(told, &format!("Ms {place}")).collect();
         let rejection: Vec<f64> =
             numbers(told, &format!("S(30 Hz) and crossover {place}")).collect();
         println!("{place}: Ms {ms:?}, S(30 Hz) {rejection:?}");
         assert!(ms[0] <= 2.0);
+        worst = f64::max(worst, rejection[0]);
         sound &= ms[1] <= 2.0;
         better |= rejection[0] < rejection[2];
     }
     assert!(better || !sound);
+    worst
 }
 
 fn ends_in_time(told: &str, most_seconds: f64) {
