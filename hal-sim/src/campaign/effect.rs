@@ -36,6 +36,9 @@ const LOOK_TICKS: u64 = 4;
 /// the limit holds it an eighth under for some ticks.
 const LIMITED: f64 = 0.995;
 const NEARLY_LIMITED: f64 = 0.85;
+/// Ticks for which it may be further under than that and be limited all the same: where a jam has driven it far over, the limit first takes more than
+/// it has to. Its poles lie within 0.88 of the origin, and a tenth of that is left after so many.
+const LIMIT_SWINGS_TICKS: u64 = 18;
 /// What the heat may be under its threshold for one who sees every fourth sample of the current.
 const NEARLY: f64 = 0.99;
 /// A following error, over its limit, that is one for certain, and that may be one: the judge's numbers are not the controller's to the bit.
@@ -144,7 +147,7 @@ pub enum Effect {
     BrieflyOverspeed,
     /// A bridge has been at its largest duty for too long.
     AtEnd,
-    /// The same, but for pauses too short to be looked at for sure.
+    /// The same, but for pauses in which its current's limit may swing.
     NearlyAtEnd,
     /// A motor has carried too much current for too long.
     Hot,
@@ -345,7 +348,7 @@ impl<'a> Effects<'a> {
             self.at_end[i] = goes_on(self.at_end[i], is_full || is_limited(LIMITED));
             let pauses = duty < full - 1.0 && !is_limited(NEARLY_LIMITED);
             self.pause[i] = goes_on(self.pause[i], pauses);
-            self.nearly[i] = goes_on(self.nearly[i], self.pause[i] < LOOK_TICKS);
+            self.nearly[i] = goes_on(self.nearly[i], self.pause[i] < LIMIT_SWINGS_TICKS);
             self.heat[i] += (current_a * current_a - self.heat[i]) * part;
             let motor = Motor {
                 volts,
