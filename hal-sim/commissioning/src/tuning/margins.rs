@@ -87,7 +87,7 @@ impl Gains {
         let mut gains = *self;
         for _ in 0..MOST_LESS {
             let all = gains.at_worst(plants, tick_s)?;
-            if all.is_stable && all.ms <= most_ms {
+            if all.are_sound(most_ms) {
                 return Some((gains, all));
             }
             gains = gains.slowed(LESS);
@@ -223,6 +223,12 @@ pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
 }
 
 impl Margins {
+    /// Whether the loop is stable and keeps Ms.
+    #[must_use]
+    pub fn are_sound(&self, most_ms: f64) -> bool {
+        self.is_stable && self.ms <= most_ms
+    }
+
     /// The worse of each.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {

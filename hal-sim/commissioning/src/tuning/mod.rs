@@ -182,8 +182,7 @@ pub fn tune(
         .map(|(start, _)| end(&evolve(&start, &LAST, |at| last.cost(at)).0));
     let ended = ended.chain(best_start.map(|(shape, _)| (*shape, VELOCITY[1])));
     let (shape, mut tuned) = last.best(ended).ok_or(TuningError::NotEvenSmall)?;
-    let all = whole.margins(&tuned.gains);
-    if !(all.is_stable && all.ms <= MOST_MS) {
+    if !whole.margins(&tuned.gains).are_sound(MOST_MS) {
         // A load that is off the centre swings otherwise at every place: slower gains of this shape may be far from the best that keep Ms there.
         let (at, _) = evolve(&unknowns(&shape, &tuned), &LAST, |at| whole.cost(at));
         let everywhere = whole.best([end(&at)]);
@@ -328,9 +327,7 @@ impl Search<'_> {
     }
 
     fn keeps(&self, margins: &Margins) -> bool {
-        margins.is_stable
-            && margins.ms <= self.limits.ms
-            && margins.resonance_peak <= self.limits.resonance_peak
+        margins.are_sound(self.limits.ms) && margins.resonance_peak <= self.limits.resonance_peak
     }
 
     fn cost(&self, unknowns: &DVector<f64>) -> f64 {
