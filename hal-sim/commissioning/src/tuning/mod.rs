@@ -25,7 +25,7 @@ pub use servo::PivotGains;
 
 use crate::drive_model::Electrical;
 use crate::record::Timing;
-use evolution::{Effort, evolve};
+use evolution::{Effort, Evolution};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
 use nalgebra::DVector;
 use std::f64::consts::TAU;
@@ -112,8 +112,10 @@ const VELOCITY: [f64; 2] = [3.0, 500.0];
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const TAIL_UNDER: f64 = 150.0;
 const LEAD_TO_HZ: f64 = 3_000.0;
-/// Frequency of a notch, Hz, its width over that, and its gain.
+/// Frequency of a notch, Hz, the least over the lowest resonance, its width over its frequency, and its gain. A wide and deep one far below what
+/// resonates, where the servos' corners are, would reject more at 30 Hz with a loop that half its gain makes unstable.
 const NOTCH_HZ: [f64; 2] = [10.0, 9_000.0];
+const NOTCH_FROM: f64 = 0.5;
 const WIDTH: [f64; 2] = [0.01, 2.0];
 const DEPTH: [f64; 2] = [0.02, 1.0];
 /// The next velocity gain that is tried, over the one before, and halvings between the two that keep the limits and do not; where those of a shape
@@ -121,19 +123,16 @@ const DEPTH: [f64; 2] = [0.02, 1.0];
 const NEXT: f64 = 0.83;
 const HALVINGS: usize = 5;
 const ABOVE: f64 = 1.2;
-/// How each start is followed: the valleys are many, and a start's own rejection hardly tells how deep its valley is. Those that are followed to the
-/// end, and how.
-const FIRST: Effort = Effort {
-    step: 0.25,
-    children: 12,
-    generations: 30,
-};
-const ENDED: usize = 2;
-const LAST: Effort = Effort {
-    step: 0.2,
+/// A search; generations from each start, how many searches are followed from there, and for how many generations at most. The valleys are many, and
+/// their first generations hardly tell how deep they are. Five times as much finds 0 to 4 % more.
+const EFFORT: Effort = Effort {
+    step: 0.3,
     children: 24,
-    generations: 120,
+    until: 1e-3,
 };
+const FIRST: usize = 100;
+const FOLLOWED: usize = 3;
+const LAST: usize = 200;
 /// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
 const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;
@@ -142,8 +141,8 @@ const UNSTABLE: f64 = 100.0;
 type Shape = [f64; 8];
 
 /// Gains for plants at several places and with several loads, and for those that they may be as well: valleys are sought on those that were found,
-/// which takes less time and does not get lost; the last search, and what is found, keeps the limits on all. `resonances_hz`: where the first two
-/// notches are tried, from the model in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are
+/// which takes less time and does not get lost; the last search, and what is found, keeps the limits on all. `resonances_hz`: of the model in the
+/// middle of the disk ([`crate::chain::Chain::resonances_hz`]); the lowest says where notches are tried. `scheduled_inertia_kg_m2`: what the gains are
 /// for, or 0.
 ///
 /// # Errors
@@ -161,31 +160,32 @@ pub fn tune(
     }
     let here = [sought.found, sought.may_be].concat();
     let everywhere = [&here, sought.elsewhere].concat();
+    let lowest_hz = resonances_hz.iter().copied().reduce(f64::min);
     let on = |plants| Search {
         plants,
         electrical,
         scheduled_inertia_kg_m2,
+        notch_hz: [
+            lowest_hz.map_or(NOTCH_HZ[0], |hz| NOTCH_FROM * hz),
+            NOTCH_HZ[1],
+        ],
         tick_s: timing.tick_s,
         limits,
     };
-    let (first, last, whole) = (on(sought.found), on(&here), on(&everywhere));
-    let starts: Vec<_> = (starts(resonances_hz).into_iter())
-        .filter_map(|shape| Some((shape, first.best_velocity(&shape, falling(VELOCITY[1]))?)))
+    let thinned: Vec<_> = sought.found.iter().map(Plant::thinned).collect();
+    let (first, last, whole) = (on(&thinned), on(&here), on(&everywhere));
+    let mut searches: Vec<_> = side_by_side(starts(lowest_hz), |shape| first.from(&shape))
+        .into_iter()
+        .flatten()
         .collect();
-    let best_start = (starts.iter())
-        .min_by(|(_, a), (_, b)| a.margins.rejection.total_cmp(&b.margins.rejection));
-    let mut found: Vec<_> = (starts.iter())
-        .map(|(shape, found)| evolve(&unknowns(shape, found), &FIRST, |at| first.cost(at)))
-        .collect();
-    found.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let ended = (found.into_iter().take(ENDED))
-        .map(|(start, _)| end(&evolve(&start, &LAST, |at| last.cost(at)).0));
-    let ended = ended.chain(best_start.map(|(shape, _)| (*shape, VELOCITY[1])));
+    searches.sort_by(|a, b| a.best().1.total_cmp(&b.best().1));
+    searches.truncate(FOLLOWED);
+    let ended = side_by_side(searches, |search| last.followed(search));
     let (shape, mut tuned) = last.best(ended).ok_or(TuningError::NotEvenSmall)?;
     if !whole.margins(&tuned.gains).are_sound(MOST_MS) {
         // A load that is off the centre swings otherwise at every place: slower gains of this shape may be far from the best that keep Ms there.
-        let (at, _) = evolve(&unknowns(&shape, &tuned), &LAST, |at| whole.cost(at));
-        let everywhere = whole.best([end(&at)]);
+        let search = Evolution::new(&unknowns(&shape, &tuned), EFFORT);
+        let everywhere = whole.best([whole.followed(search)]);
         tuned = everywhere.map_or(tuned, |(_, tuned)| tuned);
     }
     let mut gains = tuned.gains;
@@ -194,41 +194,45 @@ pub fn tune(
     Ok(Tuned { gains, margins })
 }
 
-/// Shapes to start from: notches at each pair of resonances, or where they may have moved to at another place.
-fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
-    let mut places: Vec<f64> = Vec::new();
-    for &hz in resonances_hz {
-        if places.iter().all(|place| (hz / place).ln().abs() > 0.08) {
-            places.push(hz);
-        }
-    }
-    // And without: where resonances lie far above what the servos reach, a notch only costs phase.
-    let mut starts: Vec<Shape> = (places.iter().take(1))
-        .map(|&hz| [0.25, 0.2, hz, 0.4, 0.95, 2.0 * hz, 0.4, 0.95])
-        .collect();
-    for (k, &first) in places.iter().enumerate() {
-        // A wide one turns the phase of all that lies about it, a narrow one takes one resonance out.
-        for (m, &narrow) in places.iter().enumerate() {
-            let narrow = if k == m { 2.0 * first } else { narrow };
-            starts.push([0.4, 0.4, first, 1.8, 0.1, narrow, 0.3, 0.3]);
-        }
-        for &second in places.iter().skip(k) {
-            let spread = if first == second { 1.09 } else { 1.0 };
-            for (position, corner) in [(0.25, 0.2), (0.4, 0.4)] {
-                starts.push([
-                    position,
-                    corner,
-                    first / spread,
-                    0.4,
-                    0.2,
-                    second * spread,
-                    0.4,
-                    0.2,
-                ]);
-            }
-        }
-    }
-    starts
+/// Shapes to start from: no notch at work, where resonances lie far above what the servos reach; two that are wide and shallow, about the lowest
+/// resonance and where the loop falls, which turn the phase of all that lies about them; and a narrow one at the lowest resonance with a wide one. What
+/// narrow ones at every pair of resonances lead to, these lead to as well; from a narrow one to a wide one a search hardly finds.
+fn starts(lowest_hz: Option<f64>) -> Vec<Shape> {
+    let lowest_hz = lowest_hz.unwrap_or(1_000.0);
+    let none = [0.25, 0.2, lowest_hz, 0.4, 0.95, 2.0 * lowest_hz, 0.4, 0.95];
+    let wide = [0.8, 1.25, 1.8].map(|times| {
+        [1_500.0, 2_350.0].map(|second_hz| {
+            [
+                0.35,
+                0.33,
+                times * lowest_hz,
+                1.2,
+                0.65,
+                second_hz,
+                1.2,
+                0.65,
+            ]
+        })
+    });
+    let narrow = [[1_400.0, 0.15], [2_000.0, 0.5]]
+        .map(|[second_hz, gain]| [0.45, 0.45, lowest_hz, 0.25, 0.6, second_hz, 1.5, gain]);
+    [&[none][..], wide.as_flattened(), &narrow].concat()
+}
+
+/// Of each its own, at the same time.
+fn side_by_side<A: Send, B: Send>(all: Vec<A>, of: impl Fn(A) -> B + Sync) -> Vec<B> {
+    let of = &of;
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (all.into_iter())
+            .map(|one| scope.spawn(move || of(one)))
+            .collect();
+        (threads.into_iter())
+            .map(|thread| match thread.join() {
+                Ok(found) => found,
+                Err(panic) => std::panic::resume_unwind(panic),
+            })
+            .collect()
+    })
 }
 
 fn unknowns(shape: &Shape, found: &Tuned) -> DVector<f64> {
@@ -239,11 +243,6 @@ fn unknowns(shape: &Shape, found: &Tuned) -> DVector<f64> {
 
 fn shape_of(unknowns: &DVector<f64>) -> Shape {
     std::array::from_fn(|k| unknowns[k].exp())
-}
-
-/// Shape and velocity gain at which a search has ended.
-fn end(at: &DVector<f64>) -> (Shape, f64) {
-    (shape_of(at), velocity_of(at))
 }
 
 fn velocity_of(unknowns: &DVector<f64>) -> f64 {
@@ -265,27 +264,45 @@ fn over(value: f64, limit: f64) -> f64 {
     f64::max(0.0, (value / limit).ln())
 }
 
-/// How far notches are out of their ranges, where nothing else tells a search which way is back.
-fn outside(shape: &Shape) -> f64 {
-    let [_, _, notches @ ..] = shape;
-    (notches.iter().zip([NOTCH_HZ, WIDTH, DEPTH].iter().cycle()))
-        .map(|(&value, &range)| (value / within(value, range)).ln().powi(2))
-        .sum()
-}
-
 struct Search<'a> {
     plants: &'a [Plant],
     electrical: &'a [Electrical; 3],
     scheduled_inertia_kg_m2: f64,
+    notch_hz: [f64; 2],
     tick_s: f64,
     limits: &'a Limits,
 }
 
 impl Search<'_> {
+    /// The first generations from a shape, with the largest velocity gain at which it keeps the limits; `None` where there is none.
+    fn from(&self, shape: &Shape) -> Option<Evolution> {
+        let found = self.best_velocity(shape, falling(VELOCITY[1]))?;
+        let mut search = Evolution::new(&unknowns(shape, &found), EFFORT);
+        search.go_on(FIRST, |at| self.cost(at));
+        Some(search)
+    }
+
+    /// Shape and velocity gain at which a search ends.
+    fn followed(&self, mut search: Evolution) -> (Shape, f64) {
+        search.go_on(LAST, |at| self.cost(at));
+        let (at, _) = search.best();
+        (shape_of(at), velocity_of(at))
+    }
+
+    /// How far notches are out of their ranges, where nothing else tells a search which way is back.
+    fn outside(&self, shape: &Shape) -> f64 {
+        let [_, _, notches @ ..] = shape;
+        (notches
+            .iter()
+            .zip([self.notch_hz, WIDTH, DEPTH].iter().cycle()))
+        .map(|(&value, &range)| (value / within(value, range)).ln().powi(2))
+        .sum()
+    }
+
     fn gains(&self, shape: &Shape, velocity: f64) -> Gains {
         let [position, corner, f1, w1, g1, f2, w2, g2] = *shape;
         let notch = |hz: f64, width: f64, gain: f64| Notch {
-            frequency_hz: within(hz, NOTCH_HZ),
+            frequency_hz: within(hz, self.notch_hz),
             width_hz: within(hz * within(width, WIDTH), [1.0, NOTCH_HZ[1]]),
             gain: within(gain, DEPTH),
         };
@@ -337,7 +354,7 @@ impl Search<'_> {
             return UNSTABLE;
         }
         self.loss(&Tuned { gains, margins })
-            + outside(&shape_of(unknowns))
+            + self.outside(&shape_of(unknowns))
             + PENALTY
                 * (over(margins.ms, self.limits.ms)
                     + over(margins.resonance_peak, self.limits.resonance_peak))

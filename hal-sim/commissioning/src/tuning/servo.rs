@@ -5,7 +5,7 @@
 //!  volts = filters(Kv r + integral)      the integral collects Ki r a tick later
 //! ```
 
-use firmware::parameters::{FeedbackFilters, Gains, Lead, Notch};
+use firmware::parameters::{FeedbackFilters, Gains, Notch};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -18,31 +18,12 @@ pub struct PivotGains {
     pub filters: FeedbackFilters,
 }
 
-fn notch(notch: &Notch, tangent: Complex<f64>, tick_s: f64) -> Complex<f64> {
-    if notch.frequency_hz <= 0.0 {
-        return 1.0.into();
-    }
-    let corner = (PI * notch.frequency_hz * tick_s).tan();
-    let width = corner * notch.width_hz / notch.frequency_hz;
-    let square = tangent * tangent + corner * corner;
-    (square + tangent * (notch.gain * width)) / (square + tangent * width)
-}
-
-fn lead(lead: &Lead, tangent: Complex<f64>, tick_s: f64) -> Complex<f64> {
-    if lead.from_hz <= 0.0 {
-        return 1.0.into();
-    }
-    let [from, to] = [lead.from_hz, lead.to_hz].map(|hz| (PI * hz * tick_s).tan());
-    (1.0 + tangent / from) / (1.0 + tangent / to)
-}
-
 /// A frequency, as the servo's parts need it.
 pub(super) struct At {
     /// A tick's delay.
     back: Complex<f64>,
     /// The bilinear transform's s, corners at tan(pi f T).
     tangent: Complex<f64>,
-    tick_s: f64,
 }
 
 impl At {
@@ -50,8 +31,72 @@ impl At {
         Self {
             back: Complex::cis(-TAU * hz * tick_s),
             tangent: Complex::new(0.0, (PI * hz * tick_s).tan()),
+        }
+    }
+}
+
+/// What of a servo is the same at all frequencies.
+pub(super) struct Servo {
+    gains: Gains,
+    notches: [NotchCorner; 2],
+    lead: Option<[f64; 2]>,
+    tick_s: f64,
+}
+
+/// Square of a notch's corner, and its damping above and below the line.
+struct NotchCorner {
+    square: f64,
+    over: f64,
+    under: f64,
+}
+
+impl NotchCorner {
+    fn new(notch: &Notch, tick_s: f64) -> Self {
+        if notch.frequency_hz <= 0.0 {
+            return Self {
+                square: 1.0,
+                over: 1.0,
+                under: 1.0,
+            };
+        }
+        let corner = (PI * notch.frequency_hz * tick_s).tan();
+        let width = corner * notch.width_hz / notch.frequency_hz;
+        Self {
+            square: corner * corner,
+            over: notch.gain * width,
+            under: width,
+        }
+    }
+
+    fn response(&self, tangent: Complex<f64>) -> Complex<f64> {
+        let square = tangent * tangent + self.square;
+        (square + tangent * self.over) / (square + tangent * self.under)
+    }
+}
+
+impl Servo {
+    pub(super) fn new(pivot: &PivotGains, tick_s: f64) -> Self {
+        let FeedbackFilters { notches, lead } = &pivot.filters;
+        let corner = |hz: f64| (PI * hz * tick_s).tan();
+        Self {
+            gains: pivot.gains,
+            notches: notches.each_ref().map(|one| NotchCorner::new(one, tick_s)),
+            lead: (lead.from_hz > 0.0).then(|| [lead.from_hz, lead.to_hz].map(corner)),
             tick_s,
         }
+    }
+
+    pub(super) fn response(&self, at: &At) -> Complex<f64> {
+        let At { back, tangent } = *at;
+        let rate = (1.0 - back) / self.tick_s + self.gains.position_1_s;
+        let collected = self.gains.integral_v_rad * self.tick_s * back / (1.0 - back);
+        let notches: Complex<f64> = (self.notches.iter())
+            .map(|notch| notch.response(tangent))
+            .product();
+        let lead = self.lead.map_or(Complex::from(1.0), |[from, to]| {
+            (1.0 + tangent / from) / (1.0 + tangent / to)
+        });
+        notches * lead * rate * (self.gains.velocity_v_s_rad + collected)
     }
 }
 
@@ -59,24 +104,7 @@ impl PivotGains {
     /// Volts for each rad that the ring is behind its setpoint.
     #[must_use]
     pub fn response(&self, hz: f64, tick_s: f64) -> Complex<f64> {
-        self.response_at(&At::new(hz, tick_s))
-    }
-
-    pub(super) fn response_at(&self, at: &At) -> Complex<f64> {
-        let At {
-            back,
-            tangent,
-            tick_s,
-        } = *at;
-        let rate = (1.0 - back) / tick_s + self.gains.position_1_s;
-        let collected = self.gains.integral_v_rad * tick_s * back / (1.0 - back);
-        let FeedbackFilters { notches, lead: one } = &self.filters;
-        let filters: Complex<f64> = notches
-            .iter()
-            .map(|one| notch(one, tangent, tick_s))
-            .product();
-        let velocity = self.gains.velocity_v_s_rad;
-        filters * lead(one, tangent, tick_s) * rate * (velocity + collected)
+        Servo::new(self, tick_s).response(&At::new(hz, tick_s))
     }
 
     /// With another velocity gain and the integral gain in the same proportion.

@@ -17,11 +17,13 @@ pub type Figures = Vec<(&'static str, f64)>;
 /// Resonances over this are beyond what any servo here reaches.
 const REACHED_HZ: f64 = 1_500.0;
 
-/// How warm the windings were when they were measured, K, by ring: in the mean over the step, as their currents show it (by their squares).
+/// How warm the windings were in the steps that measure what they answer, K, by ring: in the mean over a step, as their currents show it (by their
+/// squares).
 #[derive(Default)]
 pub struct Warmth {
     now: Rc<Cell<[Mean; 3]>>,
-    noted: Cell<[f64; 3]>,
+    identified: Cell<[f64; 3]>,
+    tuned: Cell<[f64; 3]>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -48,10 +50,11 @@ impl Warmth {
 
     /// After a step.
     pub fn note(&self, step: &str) {
-        let means = self.now.take();
-        if step == "identification" {
-            self.noted
-                .set(means.map(|mean| mean.weighted / mean.weights));
+        let warmer_k = (self.now.take()).map(|mean| mean.weighted / mean.weights);
+        match step {
+            "identification" => self.identified.set(warmer_k),
+            "tuning" => self.tuned.set(warmer_k),
+            _ => (),
         }
     }
 }
@@ -159,7 +162,7 @@ fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
     let inertia = chain.inertia(&Place::centre()) * torque(machine);
     let pivots: [Pivot; 3] = std::array::from_fn(|pivot| {
         let (ring, bridge) = ring_and_bridge(machine, pivot);
-        let warm = 1.0 + plant.winding.resistance_per_k * warmth.noted.get()[ring];
+        let warm = 1.0 + plant.winding.resistance_per_k * warmth.identified.get()[ring];
         Pivot {
             number: pivot + 1,
             ohm: analog.supply_gain / analog.current_gain[bridge],
@@ -279,23 +282,44 @@ fn mechanics(machine: &StageParameters, all: &[Done]) -> Figures {
     ]
 }
 
-/// The controller's gains before the machine's own plants, as warm as they begin, and the best that a servo of this structure does there: everything
-/// known, and no friction that holds the stage off. Carriages slide: they hold nothing along their guides.
-pub fn gains(machine: &StageParameters, parameters: &Parameters) -> Figures {
-    let mut warm = *machine;
-    let winding = &warm.plant.winding;
-    warm.plant.resistance_ohm *= 1.0 + winding.resistance_per_k * winding.start_k;
-    let (chain, electrical) = loop_model(&warm);
-    let plants = Plant::at_places(&electrical, &chain, &PLACES, &Timing::STAGE);
-    let at_worst = |parameters: &Parameters| {
+/// Warmth of windings at which gains have to be sound as well, K: they cool while the stage rests, and warm while it works.
+const WARMEST_K: f64 = 60.0;
+
+/// What the servos see of the true machine with its windings so much warmer, K by ring; volts are those of the controller's meter. Carriages slide:
+/// they hold nothing along their guides.
+fn plants(machine: &StageParameters, warmer_k: [f64; 3]) -> Vec<Plant> {
+    let (chain, mut electrical) = loop_model(machine);
+    for (pivot, drive) in electrical.iter_mut().enumerate() {
+        let (ring, _) = ring_and_bridge(machine, pivot);
+        drive.resistance_ohm *= 1.0 + machine.plant.winding.resistance_per_k * warmer_k[ring];
+    }
+    let mut plants = Plant::at_places(&electrical, &chain, &PLACES, &Timing::STAGE);
+    for response in plants.iter_mut().flat_map(|plant| &mut plant.response) {
+        *response = response.scale(1.0 / machine.analog.supply_gain);
+    }
+    plants
+}
+
+/// The controller's gains before the machine's own plants, with windings as warm as they were when the gains were sought, and the best that a servo of
+/// this structure does there: everything known, and no friction that holds the stage off. And Ms with windings that are cold, and warm.
+pub fn gains(machine: &StageParameters, parameters: &Parameters, warmth: &Warmth) -> Figures {
+    let at_worst = |parameters: &Parameters, warmer_k: [f64; 3]| {
+        let plants = plants(machine, warmer_k);
         let worst = Gains::of(parameters).at_worst(&plants, Timing::STAGE.tick_s);
         worst.expect("a plant")
     };
-    let found = at_worst(parameters);
-    let best = at_worst(&with_gains_tuned(parameters, &warm));
+    let tuned_k = warmth.tuned.get();
+    let mut as_tuned = *machine;
+    as_tuned.plant.resistance_ohm *=
+        1.0 + machine.plant.winding.resistance_per_k * tuned_k.iter().sum::<f64>() / 3.0;
+    let found = at_worst(parameters, tuned_k);
+    let best = at_worst(&with_gains_tuned(parameters, &as_tuned), tuned_k);
+    let [cold, warm] = [0.0, WARMEST_K].map(|warmer_k| at_worst(parameters, [warmer_k; 3]));
     vec![
         ("ms true", found.ms),
         ("s30 true", found.rejection),
         ("s30 best", found.rejection / best.rejection),
+        ("ms cold", cold.ms),
+        ("ms warm", warm.ms),
     ]
 }

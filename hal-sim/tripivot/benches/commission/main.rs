@@ -132,7 +132,7 @@ fn commissioned(seed: u64) -> Row {
     }
     if refused.is_none() {
         figures.extend(judged::figures(&truth, &done, &warmth));
-        figures.extend(judged::gains(&truth, counted.machine.parameters()));
+        figures.extend(judged::gains(&truth, counted.machine.parameters(), &warmth));
     }
     Row {
         seed,

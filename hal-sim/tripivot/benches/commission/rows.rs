@@ -21,7 +21,7 @@ pub struct Row {
 /// A figure's short name, what it is, digits behind the point, and its limit.
 type Figure = (&'static str, &'static str, usize, Option<f64>);
 
-const FIGURES: [Figure; 29] = [
+const FIGURES: [Figure; 31] = [
     ("time", "simulated time, s", 0, Some(300.0)),
     ("questions", "questions to the person", 0, Some(2.0)),
     ("ms safe", "Ms with safe gains", 2, None),
@@ -41,6 +41,18 @@ const FIGURES: [Figure; 29] = [
         "S(30 Hz) on the true plant over the best that gains can do there",
         2,
         Some(1.25),
+    ),
+    (
+        "ms cold",
+        "Ms on the true plant, windings cold",
+        2,
+        Some(2.0),
+    ),
+    (
+        "ms warm",
+        "Ms on the true plant, windings 60 K warmer than that",
+        2,
+        Some(2.0),
     ),
     (
         "peak",
