@@ -26,6 +26,15 @@ const LEAST_APART: f64 = 0.25;
 const UNCERTAIN_SPRINGS: [f64; 2] = [0.97, 1.03];
 const UNCERTAIN_DAMPERS: f64 = 0.85;
 
+/// Radius of a load of which only the mass is told, m.
+pub const CYLINDER_M: f64 = 0.05;
+
+/// Inertia of such a load about its axis, kg m^2.
+#[must_use]
+pub fn cylinder_kg_m2(mass_kg: f64) -> f64 {
+    0.5 * mass_kg * CYLINDER_M * CYLINDER_M
+}
+
 /// What is carried, about the platform's centre; lengths in track radii, masses times the track radius squared: kg m^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
@@ -130,6 +139,19 @@ impl Chain {
         Self {
             stiffness: self.stiffness / (1.0 + gives),
             damping: self.damping * (1.0 + damps),
+            ..*self
+        }
+    }
+
+    /// With so many kg more on the platform's centre: a cylinder of [`CYLINDER_M`].
+    #[must_use]
+    pub fn carrying(&self, more_kg: f64, radius_m: f64) -> Self {
+        Self {
+            load: Load {
+                mass: self.load.mass + more_kg * radius_m * radius_m,
+                inertia: self.load.inertia + cylinder_kg_m2(more_kg),
+                ..self.load
+            },
             ..*self
         }
     }

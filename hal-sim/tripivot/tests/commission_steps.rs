@@ -1,10 +1,13 @@
 //! Single steps of commissioning, on machines whose controllers have been told of them.
 
-use desk::commission::{Chosen, Finding, GainsError, Machine, PutError, run};
+use commissioning::record::Timing;
+use commissioning::tuning::{Gains, MOST_MS, PLACES, Plant};
+use desk::commission::{ChoiceError, Chosen, Finding, GainsError, Machine, PutError, run};
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::machine::plant::Imperfections;
 use hal_sim::machine::unknown;
-use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, machine_settings, stage_parameters};
+use hal_sim::rig::{Told, loop_model};
 use tripivot::attended::SimulatedMachine;
 
 #[test]
@@ -130,4 +133,44 @@ fn ends_that_are_not_where_they_are_drawn_are_refused_and_nothing_is_changed() {
     println!("{}: {}", failure.what, failure.advice);
     assert!(failure.what.contains("ends are off"), "{}", failure.what);
     assert_eq!(*stage.parameters(), before);
+}
+
+/// Ms on the true machine with so many kg more on its platform, of the gains that `chosen` finds; the largest acceleration that it leaves, rad/s^2.
+fn with_more(stage: &StageParameters, more_kg: f64, chosen: &Chosen) -> [f64; 2] {
+    let flash = SettingsFlash::in_memory();
+    let mut machine = SimulatedMachine::told(stage, flash, Told::Machine);
+    let ran = run(&mut machine, chosen, &mut |_| ()).expect("it answers");
+    for done in &ran.done {
+        assert_eq!(done.failure, None);
+    }
+    let (chain, electrical) = loop_model(stage);
+    let heavier = chain.carrying(more_kg, stage.plant.track_radius_m);
+    let at = |chain| Plant::at_places(&electrical, chain, &PLACES, &Timing::STAGE);
+    // Its gains go on being for what the controller knows.
+    let plants: Vec<_> = (at(&heavier).into_iter().zip(at(&chain)))
+        .map(|(heavier, known)| Plant {
+            inertia: known.inertia,
+            ..heavier
+        })
+        .collect();
+    let parameters = machine.parameters();
+    let worst = Gains::of(parameters).at_worst(&plants, Timing::STAGE.tick_s);
+    let acceleration = parameters.limits.pivot_acceleration_rad_s2;
+    [worst.expect("a plant").ms, acceleration]
+}
+
+#[test]
+fn gains_and_limits_are_for_what_the_platform_also_carries() {
+    const MORE_KG: f64 = 5.0;
+    let mut stage = StageParameters::REFERENCE;
+    stage.plant.imperfections = Imperfections::ALL;
+    let both = Chosen::tune().also_carrying(MORE_KG).expect("a weight");
+    let [alone, both] = [Chosen::tune(), both].map(|chosen| with_more(&stage, MORE_KG, &chosen));
+    println!("Ms with {MORE_KG} kg more, rad/s^2: {alone:.2?}; with gains for both {both:.2?}");
+    assert!(alone[0] > MOST_MS && both[0] < MOST_MS);
+    assert!(both[1] <= alone[1]);
+    for weight in [-1.0, 21.0, f64::NAN] {
+        let refused = Chosen::tune().also_carrying(weight).err();
+        assert!(matches!(refused, Some(ChoiceError::Weight)));
+    }
 }

@@ -16,13 +16,14 @@ export class Commissioning {
   #picture = new TaskPicture(byId("commission-picture"));
 
   constructor(operator, firstMove) {
-    for (const name of ["start", "from", "periods", "only", "tune", "undo", "end", "task", "words", "waits", "done", "said", "files"]) this[name] = byId(`commission-${name}`);
+    for (const name of ["start", "from", "periods", "also", "only", "tune", "undo", "end", "task", "words", "waits", "done", "said", "files"]) this[name] = byId(`commission-${name}`);
     this.orders = new Orders("commissioning", operator, firstMove, this.said);
     this.withoutJig = byId("commission-without-jig");
     const from = () => (this.from.selectedIndex > 0 ? this.from.value : null);
-    this.start.addEventListener("click", () => this.orders.give(() => ({ commission: { from: from(), scale_periods: this.#periods(), without_jig: this.withoutJig.checked } }), true));
+    this.start.addEventListener("click", () => this.orders.give(() => ({ commission: { from: from(), scale_periods: this.#periods(), without_jig: this.withoutJig.checked, also_carries_kg: this.#alsoCarries() } }), true));
     this.only.addEventListener("click", () => this.orders.give(() => ({ only: { step: this.from.value, scale_periods: this.#periods() } }), true));
-    for (const order of ["tune", "undo", "end", "done"]) this[order].addEventListener("click", () => this.orders.give(() => order, order === "tune" || order === "undo"));
+    this.tune.addEventListener("click", () => this.orders.give(() => ({ tune: { also_carries_kg: this.#alsoCarries() } }), true));
+    for (const order of ["undo", "end", "done"]) this[order].addEventListener("click", () => this.orders.give(() => order, order === "undo"));
     byId("commission-open").addEventListener("click", () => {
       byId("commissioning").open = true;
       byId("commissioning").scrollIntoView();
@@ -35,6 +36,13 @@ export class Commissioning {
     const text = this.periods.value.trim();
     if (text && !/^[1-9]\d{0,6}$/.test(text)) throw new Error(`scale periods are a whole number, not ${text}`);
     return text ? Number(text) : null;
+  }
+
+  /** What the platform carries at times besides, kg. */
+  #alsoCarries() {
+    const text = this.also.value.trim();
+    if (text && !/^\d{1,2}(\.\d+)?$/.test(text)) throw new Error(`what the platform also carries is a number of kg, not ${text}`);
+    return Number(text);
   }
 
   #show(status) {

@@ -25,6 +25,8 @@ pub struct Chosen {
     is_resumed: bool,
     /// Whether the load is not the one that the gains in force are for.
     is_loaded_anew: bool,
+    /// What may stand on the platform besides what is on it, at most, kg.
+    also_carries_kg: f64,
 }
 
 /// How the encoders' zeros are found.
@@ -59,12 +61,18 @@ impl ZerosBy {
 /// What is left of gains for another load until it is known: without the largest one motors move a third of what they move with it.
 const OTHER_LOAD: f64 = 0.5;
 
+/// What a platform may carry at times besides what is on it, kg.
+const MOST_ALSO_CARRIED_KG: f64 = 20.0;
+
 /// Why steps cannot be chosen.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChoiceError {
     /// No such name.
     #[error("there is no step `{0}`; --list tells their names")]
     NoStep(String),
+    /// Not a weight that a stage of this kind carries.
+    #[error("what the platform carries at times besides is 0 to {MOST_ALSO_CARRIED_KG} kg")]
+    Weight,
     /// It uses what is in no parameter.
     #[error("step `{name}` needs what the one before it finds: begin with `{begin}`")]
     NotFirst {
@@ -101,6 +109,7 @@ impl Chosen {
             steps: steps.filter(|step| step.name != left_out).collect(),
             is_resumed: first > 0,
             is_loaded_anew: false,
+            also_carries_kg: 0.0,
         }
     }
 
@@ -118,6 +127,7 @@ impl Chosen {
                 .collect(),
             is_resumed: at > 0,
             is_loaded_anew: false,
+            also_carries_kg: 0.0,
         })
     }
 
@@ -150,7 +160,22 @@ impl Chosen {
             steps: steps.filter(|step| names.contains(&step.name)).collect(),
             is_resumed: true,
             is_loaded_anew: false,
+            also_carries_kg: 0.0,
         }
+    }
+
+    /// For a platform that carries so many kg more at times: gains keep their margins with that as well, and motors bear it.
+    ///
+    /// # Errors
+    /// [`ChoiceError::Weight`].
+    pub fn also_carrying(self, also_carries_kg: f64) -> Result<Self, ChoiceError> {
+        if !(0.0..=MOST_ALSO_CARRIED_KG).contains(&also_carries_kg) {
+            return Err(ChoiceError::Weight);
+        }
+        Ok(Self {
+            also_carries_kg,
+            ..self
+        })
     }
 
     /// Those that are run.
@@ -167,8 +192,12 @@ impl Chosen {
 
     /// Brings the controller to where the first step expects it.
     pub(super) fn begin(&self, bench: &mut Bench<'_>) -> Result<Known, CommissionError> {
+        let also_carries_kg = self.also_carries_kg;
         if !self.is_resumed {
-            return Ok(Known::default());
+            return Ok(Known {
+                also_carries_kg,
+                ..Known::default()
+            });
         }
         bench.ask("CCL 1 ADVANCED")?;
         bench.ask("SVO X 0")?;
@@ -182,6 +211,7 @@ impl Chosen {
         }
         let known = Known {
             is_loaded_anew: self.is_loaded_anew,
+            also_carries_kg,
             ..Known::of_controller(bench)?
         };
         if self.is_loaded_anew {

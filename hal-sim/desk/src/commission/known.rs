@@ -29,6 +29,8 @@ pub(super) struct Known {
     pub motor_constants: [f64; AXES],
     /// Whether drives are known from before, and only the load is another.
     pub is_loaded_anew: bool,
+    /// What may stand on the platform besides what is on it, at most, kg.
+    pub also_carries_kg: f64,
     /// Drives, rings and platform.
     pub model: Option<DriveModel>,
     /// Friction of the carriages along their guides.

@@ -8,7 +8,7 @@ pub(super) use calibrate::{
 };
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-pub(super) use commission::{Commission, Commissioned};
+pub(super) use commission::{Commission, Commissioned, Load, Tune};
 pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
@@ -87,7 +87,7 @@ pub(super) enum Command {
     /// Every step tells what it measured, its limit and what to do where it fails. Exit code 1 at the first that does.
     Commission(Commission),
     /// Fit a commissioned controller to a new payload, without anybody's help: inertias, gains, notches, limits of motion.
-    Tune(Commissioned),
+    Tune(Tune),
     /// Measure the frequency response of a commissioned machine's loops, as tables and plots. Nothing is kept; the servo is off after it.
     Frf(Commissioned),
     /// Print the numbers of the simulated machine, as a file to change and to give back with --machine.

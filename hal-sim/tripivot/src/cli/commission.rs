@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use super::FAILED;
-use super::arguments::{Commission, Commissioned};
+use super::arguments::{Commission, Commissioned, Load, Tune};
 use super::error::CliError;
 use super::view::endpoint;
 use crate::attended::SimulatedMachine;
@@ -42,7 +42,8 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
         (Some(name), _) => Chosen::from(name, zeros)?,
         (_, Some(name)) => Chosen::only(name)?,
         _ => Chosen::all(zeros),
-    };
+    }
+    .also_carrying(also_carries_kg(&arguments.load))?;
     let answer = if arguments.yes {
         || Ok(())
     } else {
@@ -52,8 +53,13 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
 }
 
 /// A new payload.
-pub(super) fn tune(on: &Commissioned) -> Result<ExitCode, CliError> {
-    commission(on, &Chosen::tune(), wait_for_enter)
+pub(super) fn tune(arguments: &Tune) -> Result<ExitCode, CliError> {
+    let chosen = Chosen::tune().also_carrying(also_carries_kg(&arguments.load))?;
+    commission(&arguments.on, &chosen, wait_for_enter)
+}
+
+fn also_carries_kg(load: &Load) -> f64 {
+    load.also_carries.unwrap_or(0.0)
 }
 
 fn commission(

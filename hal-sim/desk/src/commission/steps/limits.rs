@@ -4,6 +4,7 @@
 use crate::commission::bench::{self, Bench};
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
+use commissioning::chain::cylinder_kg_m2;
 use firmware::control::servo::{BorneLimits, largest_limits};
 use firmware::parameters::Parameters;
 
@@ -13,20 +14,26 @@ const WEAK: &str = "the motors are too weak for the load: less load, a larger cu
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
-    _: &mut Known,
+    known: &mut Known,
     found: &mut Found,
 ) -> Result<(), CommissionError> {
     let mut parameters = bench.parameters()?;
+    parameters.platform.mass_kg += known.also_carries_kg;
+    parameters.platform.inertia_kg_m2 += cylinder_kg_m2(known.also_carries_kg);
     let (limits, most) = (&mut parameters.limits, &Parameters::REFERENCE.limits);
     limits.pivot_rate_rad_s = most.pivot_rate_rad_s;
     limits.pivot_acceleration_rad_s2 = most.pivot_acceleration_rad_s2;
     let borne = BorneLimits::new(&parameters);
     let in_force = [borne.rate_rad_s, borne.acceleration_rad_s2];
     let largest = largest_limits(&parameters);
+    let load = match known.also_carries_kg {
+        0.0 => "this load".to_owned(),
+        more_kg => format!("this load and {more_kg} kg more"),
+    };
     let names = ["rate (rad/s)", "acceleration (rad/s^2)"];
     for (i, name) in names.into_iter().enumerate() {
         found.push(Finding::new(
-            format!("largest {name} of a pivot that motors and supply bear with this load"),
+            format!("largest {name} of a pivot that motors and supply bear with {load}"),
             format!("{:.1}; in force: {:.1}", largest[i], in_force[i]),
             format!("over {}", LEAST[i]),
             largest[i] > LEAST[i],

@@ -53,6 +53,7 @@ pub(super) fn run(
         if let Some((gains, after)) = search.best(bench, known, [&gains, &former], found)? {
             put(bench, &gains)?;
             tell(found, known, &gains, &after);
+            search.tell_heavier(found, &gains);
             known.loops = after;
             return Ok(());
         }
@@ -76,36 +77,74 @@ pub(super) fn run(
 struct Search<'a> {
     model: &'a DriveModel,
     chain: Chain,
+    /// With what it carries at times besides, where it does.
+    heavier: Option<Chain>,
     measured: Vec<Plant>,
 }
 
 impl<'a> Search<'a> {
     fn new(known: &Known, model: &'a DriveModel, radius_m: f64) -> Self {
         let found = &model.mechanical.chain;
+        // Carriages that slide hold nothing: a loop has to be stable then, too, and without a spring to the ground each plant is an integrator.
+        let chain = Chain {
+            along_stiffness: 0.0,
+            along_damping: 0.0,
+            ..*found
+        };
+        let more_kg = known.also_carries_kg;
         Self {
             model,
-            // Carriages that slide hold nothing: a loop has to be stable then, too, and without a spring to the ground each plant is an integrator.
-            chain: Chain {
-                along_stiffness: 0.0,
-                along_damping: 0.0,
-                ..*found
-            },
+            chain,
+            heavier: (more_kg > 0.0).then(|| chain.carrying(more_kg, radius_m)),
             measured: (known.loops.iter())
                 .filter_map(|measured| measured.plant(found, radius_m))
                 .collect(),
         }
     }
 
+    fn at(&self, chain: &Chain, places: &[[f64; 2]]) -> Vec<Plant> {
+        Plant::at_places(&self.model.electrical, chain, places, &Timing::STAGE)
+    }
+
+    /// With what it carries at times besides, as it was found and as it may be. The controller is not told of that, and schedules its gains by the load
+    /// that it knows.
+    fn heavier(&self, places: &[[f64; 2]]) -> Vec<Plant> {
+        let known = self.at(&self.chain, places);
+        let chains = self.heavier.iter().flat_map(|chain| {
+            let [softer, stiffer] = chain.as_it_may_be();
+            [*chain, softer, stiffer]
+        });
+        let of_chain = |chain| self.at(&chain, places).into_iter().zip(&known);
+        chains
+            .flat_map(of_chain)
+            .map(|(heavier, known)| Plant {
+                inertia: known.inertia,
+                ..heavier
+            })
+            .collect()
+    }
+
     /// The machine as it was found, and as it may be.
     fn plants(&self, places: &[[f64; 2]]) -> [Vec<Plant>; 2] {
-        let at_places = |chain| {
-            Plant::at_places(&self.model.electrical, chain, places, &Timing::STAGE).into_iter()
-        };
         let as_it_may_be = self.chain.as_it_may_be();
-        [
-            at_places(&self.chain).collect(),
-            as_it_may_be.iter().flat_map(at_places).collect(),
-        ]
+        let of_chain = |chain| self.at(chain, places);
+        let mut may_be: Vec<_> = as_it_may_be.iter().flat_map(of_chain).collect();
+        may_be.extend(self.heavier(places));
+        [self.at(&self.chain, places), may_be]
+    }
+
+    /// What gains are predicted to be with what it carries at times besides.
+    fn tell_heavier(&self, found: &mut Found, gains: &Gains) {
+        if let Some(worst) = gains.at_worst(&self.heavier(&PLACES), Timing::STAGE.tick_s) {
+            found.push(Finding::new(
+                "Ms with what it also carries, as predicted",
+                format!("{:.2}; S(30 Hz) {:.3}", worst.ms, worst.rejection),
+                format!("at most {MOST_MS}"),
+                worst.are_sound(MOST_MS),
+                "have it carry less besides, or tune again whenever that stands there",
+            ));
+            found.number("Ms with what it also carries", worst.ms, "");
+        }
     }
 
     /// All that gains have to be sound on.

@@ -11,6 +11,8 @@ use std::path::PathBuf;
 pub(in super::super) struct Commission {
     #[command(flatten)]
     pub(in super::super) on: Commissioned,
+    #[command(flatten)]
+    pub(in super::super) load: Load,
     /// Begin with this step, on a controller that was commissioned before: what the steps before it found is in its parameters.
     #[arg(long, value_name = "STEP", conflicts_with_all = ["only", "list"])]
     pub(in super::super) from: Option<String>,
@@ -30,6 +32,24 @@ pub(in super::super) struct Commission {
     /// Give the controller back what it was told before the last run into the folder of --out, and have that kept.
     #[arg(long, conflicts_with_all = ["from", "only", "list"])]
     pub(in super::super) undo: bool,
+}
+
+/// Another payload.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct Tune {
+    #[command(flatten)]
+    pub(in super::super) on: Commissioned,
+    #[command(flatten)]
+    pub(in super::super) load: Load,
+}
+
+/// What the platform carries.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct Load {
+    /// Weight that stands on the platform at times besides what is on it now, at most: a cylinder of 50 mm radius in its middle. Gains and limits of
+    /// motion are for both.
+    #[arg(long, value_name = "KG", value_parser = within(0.0..=20.0))]
+    pub(in super::super) also_carries: Option<f64>,
 }
 
 /// The machine that is commissioned, tuned or looked at.

@@ -48,6 +48,9 @@ pub(in crate::web) enum Order {
         /// Whether the encoders' zeros come from the guides' ends.
         #[serde(default)]
         without_jig: bool,
+        /// What may stand on the platform besides what is on it.
+        #[serde(default)]
+        also_carries_kg: f64,
     },
     /// One step, after a repair.
     Only {
@@ -55,7 +58,11 @@ pub(in crate::web) enum Order {
         scale_periods: Option<u32>,
     },
     /// Another payload.
-    Tune,
+    Tune {
+        /// As above.
+        #[serde(default)]
+        also_carries_kg: f64,
+    },
     /// The loops as they are; nothing is kept.
     Measure,
     /// What the person was asked for is done.

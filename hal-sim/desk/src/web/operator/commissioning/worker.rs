@@ -60,15 +60,19 @@ impl Worker {
     ) -> Came {
         let chosen = match order {
             Order::Commission {
-                from, without_jig, ..
+                from,
+                without_jig,
+                also_carries_kg,
+                ..
             } => {
                 let zeros = ZerosBy::new(*without_jig);
                 let all = || Ok(Chosen::all(zeros));
-                from.as_ref()
+                (from.as_ref())
                     .map_or_else(all, |from| Chosen::from(from, zeros))
+                    .and_then(|chosen| chosen.also_carrying(*also_carries_kg))
             }
             Order::Only { step, .. } => Chosen::only(step),
-            Order::Tune => Ok(Chosen::tune()),
+            Order::Tune { also_carries_kg } => Chosen::tune().also_carrying(*also_carries_kg),
             Order::Measure => {
                 self.told
                     .begins(what, |status| status.begin(Chosen::response().steps()));
@@ -262,7 +266,7 @@ pub(super) const fn what(order: &Order) -> &'static str {
     match order {
         Order::Commission { .. } => "commissioning",
         Order::Only { .. } => "one step of commissioning",
-        Order::Tune => "tuning for another payload",
+        Order::Tune { .. } => "tuning for another payload",
         Order::Measure => "measuring the loops",
         Order::Predict { .. } => "gains on the loops as measured",
         Order::Put { .. } => "gains put in force",
