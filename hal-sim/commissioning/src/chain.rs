@@ -21,8 +21,10 @@ use std::f64::consts::TAU;
 /// Dynamic stiffness of the motor on its spring, over the spring's, under which the motor's angle does not follow from the ring's.
 const LEAST_APART: f64 = 0.25;
 
-/// What springs and dampers of an identified machine may be, over what they were found as: the first resonance is found to 1.4 % at worst, of 48
-/// machines, and 3 % of a spring are 1.5 % of a resonance.
+/// What springs and dampers of an identified machine may be, over what they were found as. Of 26 unknown machines the guides' stiffness was found to
+/// 1.9 % and their damping to 0.81 to 1.16 of what it is; the transmission's stiffness to 5 % but for two (6 and 8 %), its damping to 0.6 to 2.5 times:
+/// play softens it where nothing bears on the gears, and damps where it is crossed. Gains that bear all of that (5 %, half the damping) had an Ms of 2.0
+/// on the true plant of one machine more, in place of 2.2, and left a sixth or more of a disturbance more on 12 of 44.
 const UNCERTAIN_SPRINGS: [f64; 2] = [0.97, 1.03];
 const UNCERTAIN_DAMPERS: f64 = 0.85;
 
@@ -156,8 +158,7 @@ impl Chain {
         }
     }
 
-    /// What an identified machine may be as well: springs off either way, and dampers weaker. Play softens them
-    /// where nothing bears on the gears, and damps where it is crossed.
+    /// What an identified machine may be as well: springs off either way, and dampers weaker.
     #[must_use]
     pub fn as_it_may_be(&self) -> [Self; 2] {
         UNCERTAIN_SPRINGS.map(|springs| self.scaled(springs, UNCERTAIN_DAMPERS))
