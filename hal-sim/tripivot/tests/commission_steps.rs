@@ -3,11 +3,12 @@
 use commissioning::record::Timing;
 use commissioning::tuning::{Gains, MOST_MS, PLACES, Plant};
 use desk::commission::{ChoiceError, Chosen, Finding, GainsError, Machine, PutError, run};
+use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::plant::Imperfections;
 use hal_sim::machine::unknown;
 use hal_sim::rig::run::{RunOptions, machine_settings, stage_parameters};
-use hal_sim::rig::{Told, loop_model};
+use hal_sim::rig::{Told, loop_model, with_reference_gains};
 use tripivot::attended::SimulatedMachine;
 
 #[test]
@@ -135,14 +136,8 @@ fn ends_that_are_not_where_they_are_drawn_are_refused_and_nothing_is_changed() {
     assert_eq!(*stage.parameters(), before);
 }
 
-/// Ms on the true machine with so many kg more on its platform, of the gains that `chosen` finds; the largest acceleration that it leaves, rad/s^2.
-fn with_more(stage: &StageParameters, more_kg: f64, chosen: &Chosen) -> [f64; 2] {
-    let flash = SettingsFlash::in_memory();
-    let mut machine = SimulatedMachine::told(stage, flash, Told::Machine);
-    let ran = run(&mut machine, chosen, &mut |_| ()).expect("it answers");
-    for done in &ran.done {
-        assert_eq!(done.failure, None);
-    }
+/// Ms of gains on the true machine with so many kg more on its platform.
+fn ms_with_more(stage: &StageParameters, more_kg: f64, parameters: &Parameters) -> f64 {
     let (chain, electrical) = loop_model(stage);
     let heavier = chain.carrying(more_kg, stage.plant.track_radius_m);
     let at = |chain| Plant::at_places(&electrical, chain, &PLACES, &Timing::STAGE);
@@ -153,10 +148,8 @@ fn with_more(stage: &StageParameters, more_kg: f64, chosen: &Chosen) -> [f64; 2]
             ..heavier
         })
         .collect();
-    let parameters = machine.parameters();
     let worst = Gains::of(parameters).at_worst(&plants, Timing::STAGE.tick_s);
-    let acceleration = parameters.limits.pivot_acceleration_rad_s2;
-    [worst.expect("a plant").ms, acceleration]
+    worst.expect("a plant").ms
 }
 
 #[test]
@@ -164,11 +157,22 @@ fn gains_and_limits_are_for_what_the_platform_also_carries() {
     const MORE_KG: f64 = 5.0;
     let mut stage = StageParameters::REFERENCE;
     stage.plant.imperfections = Imperfections::ALL;
-    let both = Chosen::tune().also_carrying(MORE_KG).expect("a weight");
-    let [alone, both] = [Chosen::tune(), both].map(|chosen| with_more(&stage, MORE_KG, &chosen));
-    println!("Ms with {MORE_KG} kg more, rad/s^2: {alone:.2?}; with gains for both {both:.2?}");
-    assert!(alone[0] > MOST_MS && both[0] < MOST_MS);
-    assert!(both[1] <= alone[1]);
+    let flash = SettingsFlash::in_memory();
+    let mut machine = SimulatedMachine::told(&stage, flash, Told::Machine);
+    let for_one = with_reference_gains(machine.parameters());
+    let for_both = Chosen::tune().also_carrying(MORE_KG).expect("a weight");
+    let ran = run(&mut machine, &for_both, &mut |_| ()).expect("it answers");
+    for done in &ran.done {
+        assert_eq!(done.failure, None);
+    }
+    let for_both = machine.parameters();
+    let [one, both] = [&for_one, for_both].map(|all| ms_with_more(&stage, MORE_KG, all));
+    let accelerations = [&for_one, for_both].map(|all| all.limits.pivot_acceleration_rad_s2);
+    println!(
+        "Ms with {MORE_KG} kg more {one:.2}, with gains for both {both:.2}; {accelerations:.0?}"
+    );
+    assert!(one > MOST_MS && both < MOST_MS);
+    assert!(accelerations[1] < accelerations[0]);
     for weight in [-1.0, 21.0, f64::NAN] {
         let refused = Chosen::tune().also_carrying(weight).err();
         assert!(matches!(refused, Some(ChoiceError::Weight)));
