@@ -8,11 +8,11 @@ use firmware::parameters::Parameters;
 use hal_sim::campaign::Commissioned;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters, WiringParameters};
 use hal_sim::machine::unknown;
-use hal_sim::parallel::{cores, of_all};
 use hal_sim::report::{Run, Sample};
 use hal_sim::rig::run::{RunOptions, RunOutcome, run_machine};
 use hal_sim::rig::script::Script;
-use hal_sim::rig::with_gains_tuned;
+use hal_sim::rig::{guides_hz, with_gains_tuned};
+use parallel::{cores, of_all};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -158,9 +158,7 @@ fn demonstration(machine: &StageParameters, parameters: &Parameters) -> RunOutco
 }
 
 fn figures(run: &Run, machine: &StageParameters) -> Figures {
-    let plant = &machine.plant;
-    let carried_kg = plant.platform_mass_kg + plant.payload.mass_kg;
-    let platform_hz = (1.5 * plant.guide_stiffness_n_m / carried_kg).sqrt() / std::f64::consts::TAU;
+    let platform_hz = guides_hz(&machine.plant);
     let rows = run.trace.rows();
     let settled = |settling_s: fn(&[Sample]) -> f64| {
         let all: Vec<f64> = (run.moves.iter())

@@ -9,9 +9,9 @@ use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues};
 use hal_sim::front::Host;
 use hal_sim::machine::devices::StageParameters;
-use hal_sim::parallel::{cores, of_all};
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
+use parallel::{cores, of_all};
 
 const TICKS_A_SECOND: u64 = 20_000;
 const UNIT: f64 = 4_294_967_296.0;

@@ -2,11 +2,11 @@
 //! `cargo bench -p hal-sim --bench unknown_told`. `SEEDS=50` takes unknown machines 1 to 50 in place of 1 to 6. Exit code 1 where one ends in a fault.
 
 use hal_sim::machine::unknown;
-use hal_sim::parallel::{cores, of_all};
 use hal_sim::report::Move;
 use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, run};
 use hal_sim::rig::script::Script;
+use parallel::{cores, of_all};
 use std::process::ExitCode;
 
 /// What a machine comes to.

@@ -7,13 +7,11 @@
 //! | [`rig`] | controller and machine together, under a script or a client |
 //! | [`campaign`] | many runs in each of which something breaks |
 //! | [`report`] | what a run leaves behind |
-//! | [`parallel`] | runs side by side |
 //! | [`random`] | random numbers from a seed |
 
 pub mod campaign;
 pub mod front;
 pub mod machine;
-pub mod parallel;
 pub mod random;
 pub mod report;
 pub mod rig;

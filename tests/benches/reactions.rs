@@ -1,7 +1,7 @@
 //! Way, turn and time to rest of each reaction on the worst machine, worst over a grid of motions: `cargo bench -p tests --bench reactions`.
 //! `KEEP=1` writes `firmware/reactions.csv`, from which `firmware/FAULTS.md` has them.
 
-use hal_sim::parallel::{cores, of_all};
+use parallel::{cores, of_all};
 use std::fmt::Write;
 use tests::reactions::{Motion, ToRest, Trouble, to_rest};
 

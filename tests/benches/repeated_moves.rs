@@ -5,10 +5,10 @@
 //! without. An error is the root mean square over the pivots and the ticks of the move and of 5 ms after it.
 //! `TRIALS=1` prints every one of them.
 
-use hal_sim::parallel::{cores, of_all};
 use hal_sim::random::Random;
 use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
+use parallel::{cores, of_all};
 use tests::Bench;
 
 const MOVES: usize = 40;

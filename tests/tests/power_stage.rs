@@ -6,8 +6,8 @@ use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use hal_sim::machine::devices::{BrakeResistorFault, StageParameters};
 use hal_sim::machine::plant::Imperfections;
-use hal_sim::parallel::{cores, of_all};
 use hal_sim::rig::run::{RunOptions, stage_parameters};
+use parallel::{cores, of_all};
 use tests::Bench;
 use tests::reactions::Motion;
 

@@ -21,8 +21,8 @@ use calibration::spread::over_disk;
 use calibration::{Accuracy, DRAWN, Fit, Instrument, Kit, Noise, fit, plan};
 use hal_sim::machine::instruments::{QuasiStatic, Unrepeated, commanded, survey, workshop};
 use hal_sim::machine::unknown;
-use hal_sim::parallel::{cores, of_all};
 use hal_sim::random::Random;
+use parallel::{cores, of_all};
 
 const RADIUS_M: f64 = 0.1;
 const DISK: f64 = 0.8;

@@ -14,8 +14,8 @@ mod matrix;
 mod sine;
 
 use case::{Case, SHAPED, SHAPED_FOR_LOAD, Tuning};
-use hal_sim::parallel::{cores, of_all};
 use matrix::Peak;
+use parallel::{cores, of_all};
 
 /// The largest radius at which the reference motion works.
 const RIM_MM: f64 = 76.0;

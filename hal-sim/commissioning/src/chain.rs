@@ -23,10 +23,10 @@ const LEAST_APART: f64 = 0.25;
 
 /// What springs and dampers of an identified machine may be, over what they were found as. Of 26 unknown machines the guides' stiffness was found to
 /// 1.9 % and their damping to 0.81 to 1.16 of what it is; the transmission's stiffness to 5 % but for two (6 and 8 %), its damping to 0.6 to 2.5 times:
-/// play softens it where nothing bears on the gears, and damps where it is crossed. Gains that bear all of that (5 %, half the damping) had an Ms of 2.0
-/// on the true plant of one machine more, in place of 2.2, and left a sixth or more of a disturbance more on 12 of 44.
-const UNCERTAIN_SPRINGS: [f64; 2] = [0.97, 1.03];
-const UNCERTAIN_DAMPERS: f64 = 0.85;
+/// play softens it where nothing bears on the gears, and damps where it is crossed.
+const UNCERTAIN_SPRINGS: [f64; 2] = [0.95, 1.05];
+const UNCERTAIN_DAMPERS: f64 = 0.7;
+const UNCERTAIN_TRANSMISSION_DAMPER: f64 = 0.5;
 
 /// Radius of a load of which only the mass is told, m.
 pub const CYLINDER_M: f64 = 0.05;
@@ -161,7 +161,10 @@ impl Chain {
     /// What an identified machine may be as well: springs off either way, and dampers weaker.
     #[must_use]
     pub fn as_it_may_be(&self) -> [Self; 2] {
-        UNCERTAIN_SPRINGS.map(|springs| self.scaled(springs, UNCERTAIN_DAMPERS))
+        UNCERTAIN_SPRINGS.map(|springs| Self {
+            damping: UNCERTAIN_TRANSMISSION_DAMPER * self.damping,
+            ..self.scaled(springs, UNCERTAIN_DAMPERS)
+        })
     }
 
     /// The same with all springs so many times as stiff, and dampers so many times as strong. Resonances go with the root of the first.

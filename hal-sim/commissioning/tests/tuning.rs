@@ -270,8 +270,8 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
     let at_worst = |as_it_may_be: &[Plant]| {
         let model = (chain, electrical);
         let tuned = tuned([&found, as_it_may_be], &model, &Limits::WITH_FRICTION);
-        let off = [0.97, 0.98, 0.99, 1.01, 1.02, 1.03].map(|springs| {
-            let off = at_places(&chain.scaled(springs, 0.85));
+        let off = [0.95, 0.97, 0.99, 1.01, 1.03, 1.05].map(|springs| {
+            let off = at_places(&chain.scaled(springs, 0.7));
             let worst = (tuned.gains.at_worst(&off, TIMING.tick_s)).expect("a plant");
             assert!(worst.is_stable);
             worst.ms
@@ -282,6 +282,28 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
     let uncertain = at_worst(&chain.as_it_may_be().map(|chain| at_places(&chain)).concat());
     println!("Ms for the model as it stands {certain:.2}, as it may be {uncertain:.2}");
     assert!(uncertain < MOST_MS && certain > MOST_MS);
+}
+
+/// A winding that is warm at work makes the loop slower and not its integral: gains that are sought with warm ones as well keep Ms there.
+#[test]
+fn gains_bear_windings_that_are_warm_at_work() {
+    let (chain, electrical) = loop_model(&hal_sim::machine::unknown(34));
+    let at_work = (electrical.each_ref()).map(Electrical::at_work);
+    let plants = |electrical| Plant::at_places(electrical, &chain, &PLACES[..SEARCHED], &TIMING);
+    let [found, warm] = [&electrical, &at_work].map(plants);
+    let ms_at_work = |may_be: &[Plant]| {
+        let tuned = tuned(
+            [&found, may_be],
+            &(chain, electrical),
+            &Limits::WITH_FRICTION,
+        );
+        (tuned.gains.at_worst(&warm, TIMING.tick_s))
+            .expect("a plant")
+            .ms
+    };
+    let (without, with) = (ms_at_work(&[]), ms_at_work(&warm));
+    println!("Ms with windings that are warm at work {without:.2}, with gains for them {with:.2}");
+    assert!(with <= MOST_MS && without > MOST_MS);
 }
 
 /// S(30 Hz) of the best that searches of ten times the effort and from four times the starts have found: a search may miss a valley, and this machine's
@@ -301,7 +323,7 @@ fn a_search_finds_what_longer_ones_find() {
 /// slower ones of the same shape.
 #[test]
 fn gains_are_for_places_that_were_not_searched_as_well() {
-    let (chain, electrical) = loop_model(&hal_sim::machine::unknown(30));
+    let (chain, electrical) = loop_model(&hal_sim::machine::unknown(9));
     let at = |places: &[[f64; 2]]| {
         let of = |chain: &Chain| Plant::at_places(&electrical, chain, places, &TIMING);
         [
@@ -326,7 +348,7 @@ fn gains_are_for_places_that_were_not_searched_as_well() {
     let (without, with) = (ms_and_rejection(&[]), ms_and_rejection(&elsewhere));
     println!("Ms, and S(30 Hz) once slowed: {without:.3?}, with all places {with:.3?}");
     assert!(without.0 > MOST_MS && with.0 < MOST_MS);
-    assert!(with.1 < 0.9 * without.1);
+    assert!(with.1 < 0.71 * without.1);
 }
 
 impl Compared {

@@ -159,6 +159,13 @@ const GUIDES_HZ: f64 = 796.0;
 /// What of it is left for what the model has not: a gap, a preload that opens.
 const SAFETY: f64 = 0.6;
 
+/// At which the platform swings across its guides with its pivots held, Hz.
+#[must_use]
+pub fn guides_hz(plant: &PlantParameters) -> f64 {
+    let carried_kg = plant.platform_mass_kg + plant.payload.mass_kg;
+    (1.5 * plant.guide_stiffness_n_m / carried_kg).sqrt() / core::f64::consts::TAU
+}
+
 /// The same with gains that its resonances bear, as who puts it into service turns them down: as crossovers fall on machines that were
 /// tried (272 Hz rigid; 240, 204 and 120 with guides that resonate at 796, 503 and 218 Hz; three quarters of that with a transmission of
 /// 600 Hz), then by two fifths, and further until the loops keep an Ms of 3 everywhere. In a hundredth of the time that a search takes.
@@ -168,8 +175,7 @@ pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Pa
     let (plant, reference) = (&stage.plant, &StageParameters::REFERENCE.plant);
     let softer = plant.transmission_stiffness_n_m_rad / reference.transmission_stiffness_n_m_rad;
     let transmission_hz = TRANSMISSION_HZ * softer.sqrt();
-    let carried_kg = plant.platform_mass_kg + plant.payload.mass_kg;
-    let guides_hz = (1.5 * plant.guide_stiffness_n_m / carried_kg).sqrt() / core::f64::consts::TAU;
+    let guides_hz = guides_hz(plant);
     // The winding's lag is the largest that the loop has.
     let lag_s = |plant: &PlantParameters| plant.inductance_h / plant.resistance_ohm;
     let share = (transmission_hz / TRANSMISSION_HZ).powf(0.3).min(1.0)

@@ -32,8 +32,8 @@ pub use calibrated::{built_stage, calibration_told};
 pub use conditions::{machine_name, run_conditions};
 pub use disturbances::Disturbances;
 pub use gains::{
-    loop_model, with_gains_firmer, with_gains_fitted, with_gains_tuned, with_motion_fitted,
-    with_reference_gains,
+    guides_hz, loop_model, with_gains_firmer, with_gains_fitted, with_gains_tuned,
+    with_motion_fitted, with_reference_gains,
 };
 pub use told::{
     Told, with_drives_told, with_gear_errors_told, with_guides_told, with_inertia_scheduled,

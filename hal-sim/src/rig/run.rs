@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use commissioning::chain::cylinder_kg_m2;
 use firmware::fault::Fault;
 use firmware::gcs::Session;
 use firmware::mode::Mode;
@@ -95,9 +96,7 @@ pub struct RunOutcome {
     pub ticks: u64,
 }
 
-/// Radius of the payload's cylinder, m.
-const CYLINDER_M: f64 = 0.05;
-/// Its distance from the platform's centre, m.
+/// Distance of the payload from the platform's centre, m.
 const OFF_CENTRE_M: f64 = 0.02;
 
 /// The machine as the options have it: off from the controller's model by their mismatch, heavier, with more
@@ -109,7 +108,7 @@ pub fn stage_parameters(options: &RunOptions) -> StageParameters {
     let reference = options.machine.plant;
     let load = Payload {
         mass_kg: options.payload_kg,
-        inertia_kg_m2: options.payload_kg * CYLINDER_M * CYLINDER_M / 2.0,
+        inertia_kg_m2: cylinder_kg_m2(options.payload_kg),
         eccentricity_m: OFF_CENTRE_M,
         direction_rad: 0.7,
     };

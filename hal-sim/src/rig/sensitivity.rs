@@ -3,8 +3,8 @@
 use super::run::{RunOptions, run};
 use super::script::Script;
 use crate::machine::plant::{Imperfections, NAMED};
-use crate::parallel::of_all;
 use crate::report::Move;
+use parallel::of_all;
 
 /// A machine that is compared.
 #[derive(Clone, Debug)]

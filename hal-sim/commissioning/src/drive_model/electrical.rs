@@ -38,6 +38,22 @@ pub struct Electrical {
     pub deviations: [f64; 4],
 }
 
+/// What copper's resistance gains with each kelvin, over itself.
+pub const COPPER_1_K: f64 = 0.0039;
+/// How much warmer than while it was identified a winding may be at work, K.
+const AT_WORK_K: f64 = 60.0;
+
+impl Electrical {
+    /// With its winding as warm as it may be at work.
+    #[must_use]
+    pub fn at_work(&self) -> Self {
+        Self {
+            resistance_ohm: self.resistance_ohm * (1.0 + COPPER_1_K * AT_WORK_K),
+            ..*self
+        }
+    }
+}
+
 /// Bins that are used, Hz: below, errors of gear and commutator are; above, the encoder's noise is all there is.
 const BAND_HZ: [f64; 2] = [15.0, 4_000.0];
 /// Images on either side.

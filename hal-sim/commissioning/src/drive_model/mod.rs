@@ -10,7 +10,7 @@ mod dead_time;
 mod electrical;
 mod mechanical;
 
-pub use electrical::{Besides, Electrical, Equations, electrical};
+pub use electrical::{Besides, COPPER_1_K, Electrical, Equations, electrical};
 pub use mechanical::{Guess, Mechanical, NAMES, Responses, mechanical};
 
 use crate::frequency_response::Run;

@@ -2,6 +2,7 @@
 //! CMA Evolution Strategy: A Tutorial", arXiv 1604.00772, with its default numbers but for the children). The same start gives the same end.
 
 use nalgebra::{DMatrix, DVector};
+use parallel::{cores, of_all};
 use std::f64::consts::TAU;
 
 /// Normal numbers, always the same ones: SplitMix64, and Box and Muller's pairs.
@@ -104,7 +105,7 @@ impl Evolution {
     }
 
     /// So many generations more, of this cost: it may be another one than before.
-    pub fn go_on(&mut self, generations: usize, cost: impl Fn(&DVector<f64>) -> f64) {
+    pub fn go_on(&mut self, generations: usize, cost: impl Fn(&DVector<f64>) -> f64 + Sync) {
         self.best.1 = cost(&self.best.0);
         for _ in 0..generations {
             if !self.has_another(&cost) {
@@ -119,7 +120,7 @@ impl Evolution {
     }
 
     /// A generation, unless its steps would be too small to tell.
-    fn has_another(&mut self, cost: impl Fn(&DVector<f64>) -> f64) -> bool {
+    fn has_another(&mut self, cost: impl Fn(&DVector<f64>) -> f64 + Sync) -> bool {
         let n = self.mean.len();
         let eigen = self.covariance.clone().symmetric_eigen();
         let scales = eigen.eigenvalues.map(|value: f64| value.max(1e-20).sqrt());
@@ -127,19 +128,21 @@ impl Evolution {
             return false;
         }
         let root = &eigen.eigenvectors * DMatrix::from_diagonal(&scales);
-        let mut all: Vec<_> = (0..self.effort.children)
-            .map(|_| {
-                let draw = DVector::from_fn(n, |_, _| self.normal.next());
-                let way = &root * draw;
-                let point = &self.mean + self.sigma * &way;
-                (cost(&point), way, point)
-            })
+        let ways: Vec<_> = (0..self.effort.children)
+            .map(|_| &root * DVector::from_fn(n, |_, _| self.normal.next()))
+            .collect();
+        let children = of_all(&ways, cores(), |way| {
+            let point = &self.mean + self.sigma * way;
+            (cost(&point), point)
+        });
+        let mut all: Vec<_> = (children.into_iter().zip(&ways))
+            .map(|((cost, point), way)| (cost, way, point))
             .collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         if all[0].0 < self.best.1 {
             self.best = (all[0].2.clone(), all[0].0);
         }
-        let parents: Vec<_> = (all.iter().map(|(_, way, _)| way))
+        let parents: Vec<_> = (all.iter().map(|(_, way, _)| *way))
             .zip(self.rates.weights.iter().copied())
             .collect();
         let way: DVector<f64> =

@@ -72,7 +72,24 @@ impl Gains {
     /// The worst margins on all plants; `None` where there is no plant.
     #[must_use]
     pub fn at_worst(&self, plants: &[Plant], tick_s: f64) -> Option<Margins> {
-        let all = plants.iter().map(|plant| margins(plant, self, tick_s));
+        self.at_worst_with(plants, tick_s, &Enough::NOTHING)
+    }
+
+    /// The same, exact only beyond what is enough.
+    pub(super) fn at_worst_with(
+        &self,
+        plants: &[Plant],
+        tick_s: f64,
+        enough: &Enough,
+    ) -> Option<Margins> {
+        let mut servos: Option<Servos<'_>> = None;
+        let all = plants.iter().map(|plant| {
+            // Plants of a model have the same frequencies.
+            let same = servos.take().filter(|servos| servos.hz == plant.hz);
+            let servos =
+                servos.insert(same.unwrap_or_else(|| Servos::new(&plant.hz, self, tick_s)));
+            servos.margins(plant, enough)
+        });
         all.reduce(Margins::worse)
     }
 
@@ -137,7 +154,8 @@ pub const BEYOND: f64 = 1.5;
 #[must_use]
 pub fn sensitivity(plant: &Plant, gains: &Gains, tick_s: f64) -> Vec<Matrix3<Complex<f64>>> {
     let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
-    (plant.response.iter().zip(servos(plant, gains, tick_s)))
+    let servos = Servos::new(&plant.hz, gains, tick_s);
+    (plant.response.iter().zip(servos.at(plant)))
         .map(|(response, servos)| {
             let l = Matrix3::from_diagonal(&servos.into()) * response;
             (Matrix3::identity() + l).try_inverse().unwrap_or(nothing)
@@ -145,87 +163,122 @@ pub fn sensitivity(plant: &Plant, gains: &Gains, tick_s: f64) -> Vec<Matrix3<Com
         .collect()
 }
 
-/// Volts for each rad of the three servos at each frequency.
-fn servos<'a>(
-    plant: &'a Plant,
-    gains: &'a Gains,
-    tick_s: f64,
-) -> impl Iterator<Item = [Complex<f64>; 3]> + 'a {
-    let shares = plant
-        .inertia
-        .map(|inertia| match gains.scheduled_inertia_kg_m2 {
-            scheduled if scheduled > 0.0 => inertia / scheduled,
-            _ => 1.0,
-        });
-    let servos = (gains.pivots.each_ref()).map(|pivot| Servo::new(pivot, tick_s));
-    plant.hz.iter().map(move |&hz| {
-        let at = At::new(hz, tick_s);
-        [0, 1, 2].map(|i| servos[i].response(&at) * shares[i])
-    })
+/// Margins up to which it is enough to know that they are no larger: singular values take most of a search's time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Enough {
+    pub ms: f64,
+    pub resonance_peak: f64,
 }
 
-/// The loops `P C` at each frequency.
-fn loops<'a>(
-    plant: &'a Plant,
-    gains: &'a Gains,
-    tick_s: f64,
-) -> impl Iterator<Item = Matrix3<Complex<f64>>> + 'a {
-    (plant.response.iter().zip(servos(plant, gains, tick_s)))
-        .map(|(response, servos)| response * Matrix3::from_diagonal(&servos.into()))
+impl Enough {
+    const NOTHING: Self = Self {
+        ms: 0.0,
+        resonance_peak: 0.0,
+    };
+}
+
+/// The servos of the three pivots, with the gains as they are told, at these frequencies.
+struct Servos<'a> {
+    hz: &'a [f64],
+    responses: Vec<[Complex<f64>; 3]>,
+    /// `(1 - 1/z)^6`.
+    integrators: Vec<Complex<f64>>,
+    scheduled_inertia_kg_m2: f64,
+}
+
+impl<'a> Servos<'a> {
+    fn new(hz: &'a [f64], gains: &Gains, tick_s: f64) -> Self {
+        let servos = (gains.pivots.each_ref()).map(|pivot| Servo::new(pivot, tick_s));
+        let response = |&hz: &f64| {
+            let at = At::new(hz, tick_s);
+            servos.each_ref().map(|servo| servo.response(&at))
+        };
+        let integrators = |hz: &f64| (1.0 - Complex::cis(-TAU * hz * tick_s)).powi(6);
+        Self {
+            hz,
+            responses: hz.iter().map(response).collect(),
+            integrators: hz.iter().map(integrators).collect(),
+            scheduled_inertia_kg_m2: gains.scheduled_inertia_kg_m2,
+        }
+    }
+
+    /// With gains as they are scheduled for what the pivots move there.
+    fn at(&self, plant: &Plant) -> impl Iterator<Item = [Complex<f64>; 3]> {
+        let scheduled = self.scheduled_inertia_kg_m2;
+        let shares = (plant.inertia).map(|inertia| match scheduled > 0.0 {
+            true => inertia / scheduled,
+            false => 1.0,
+        });
+        (self.responses.iter()).map(move |at| [0, 1, 2].map(|i| at[i] * shares[i]))
+    }
+
+    /// The loops `P C` at each frequency.
+    fn loops(&self, plant: &Plant) -> Vec<Matrix3<Complex<f64>>> {
+        (plant.response.iter().zip(self.at(plant)))
+            .map(|(response, servos)| Matrix3::from_fn(|i, j| response[(i, j)] * servos[j]))
+            .collect()
+    }
+
+    fn margins(&self, plant: &Plant, enough: &Enough) -> Margins {
+        let mut found = Margins {
+            is_stable: true,
+            ms: enough.ms,
+            ms_hz: 0.0,
+            rejection: f64::NAN,
+            crossover_hz: f64::INFINITY,
+            resonance_peak: enough.resonance_peak,
+        };
+        let loops = self.loops(plant);
+        let (mut last, mut turned) = (Complex::from(1.0), 0.0);
+        let mut crossovers = [0.0; 3];
+        for ((&hz, l), integrators) in plant.hz.iter().zip(&loops).zip(&self.integrators) {
+            let difference = Matrix3::identity() + l;
+            let (determinant, adjugate) = determinant_and_adjugate(&difference);
+            let now = determinant * integrators;
+            turned += (now / last).arg();
+            last = now;
+            let is_first_there =
+                plant.is_complete && found.rejection.is_nan() && hz >= REJECTION_HZ;
+            // The two larger singular values of three have a product of at most a quarter of all their squares' sum squared.
+            let at_most = 0.5 * difference.norm_squared() / determinant.norm();
+            if is_first_there || !(at_most <= found.ms) {
+                let size = 1.0 / least_singular(&difference);
+                if !(size <= found.ms) {
+                    (found.ms, found.ms_hz) = (size, hz);
+                }
+                if is_first_there {
+                    found.rejection = size;
+                }
+            }
+            for (i, crossover) in crossovers.iter_mut().enumerate() {
+                if (determinant - adjugate[i]).norm_sqr() >= adjugate[i].norm_sqr() {
+                    *crossover = hz;
+                }
+            }
+        }
+        found.crossover_hz = crossovers.into_iter().fold(f64::INFINITY, f64::min);
+        found.is_stable = !plant.is_complete || turned.abs() < PI;
+        let beyond = (plant.hz.iter()).position(|hz| *hz > BEYOND * found.crossover_hz);
+        let first = beyond.unwrap_or(loops.len()).max(1);
+        let sizes: Vec<f64> = (loops.iter().skip(first - 1))
+            .map(|l| match l.norm() > enough.resonance_peak {
+                true => largest_singular(l),
+                false => 0.0,
+            })
+            .collect();
+        for beside in sizes.windows(3) {
+            if beside[1] > beside[0] && beside[1] > beside[2] {
+                found.resonance_peak = found.resonance_peak.max(beside[1]);
+            }
+        }
+        found
+    }
 }
 
 /// The margins of a loop at one place.
 #[must_use]
 pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
-    let mut found = Margins {
-        is_stable: true,
-        ms: 0.0,
-        ms_hz: 0.0,
-        rejection: f64::NAN,
-        crossover_hz: f64::INFINITY,
-        resonance_peak: 0.0,
-    };
-    let loops: Vec<_> = loops(plant, gains, tick_s).collect();
-    let (mut last, mut turned) = (Complex::from(1.0), 0.0);
-    let mut crossovers = [0.0; 3];
-    for (&hz, l) in plant.hz.iter().zip(&loops) {
-        let difference = Matrix3::identity() + l;
-        let (determinant, adjugate) = determinant_and_adjugate(&difference);
-        let back = 1.0 - Complex::cis(-TAU * hz * tick_s);
-        let now = determinant * back.powi(6);
-        turned += (now / last).arg();
-        last = now;
-        let is_first_there = plant.is_complete && found.rejection.is_nan() && hz >= REJECTION_HZ;
-        // The two larger singular values of three have a product of at most a quarter of all their squares' sum squared.
-        let at_most = 0.5 * difference.norm_squared() / determinant.norm();
-        if is_first_there || !(at_most <= found.ms) {
-            let size = 1.0 / least_singular(&difference);
-            if !(size <= found.ms) {
-                (found.ms, found.ms_hz) = (size, hz);
-            }
-            if is_first_there {
-                found.rejection = size;
-            }
-        }
-        for (i, crossover) in crossovers.iter_mut().enumerate() {
-            if (determinant - adjugate[i]).norm_sqr() >= adjugate[i].norm_sqr() {
-                *crossover = hz;
-            }
-        }
-    }
-    found.crossover_hz = crossovers.into_iter().fold(f64::INFINITY, f64::min);
-    found.is_stable = !plant.is_complete || turned.abs() < PI;
-    let beyond = (plant.hz.iter()).position(|hz| *hz > BEYOND * found.crossover_hz);
-    let first = beyond.unwrap_or(loops.len()).max(1);
-    let sizes: Vec<f64> = (loops.iter().skip(first - 1))
-        .map(largest_singular)
-        .collect();
-    for beside in sizes.windows(3) {
-        if beside[1] > beside[0] && beside[1] > beside[2] {
-            found.resonance_peak = found.resonance_peak.max(beside[1]);
-        }
-    }
-    found
+    Servos::new(&plant.hz, gains, tick_s).margins(plant, &Enough::NOTHING)
 }
 
 impl Margins {
@@ -276,17 +329,23 @@ fn largest_singular(m: &Matrix3<Complex<f64>>) -> f64 {
 
 /// Eigenvalues of `m* m`, the largest first: of a Hermitian matrix of three in closed form (Smith, Communications of the ACM 4(4), 1961).
 fn singular_squares(m: &Matrix3<Complex<f64>>) -> [f64; 3] {
-    let square = m.adjoint() * m;
-    let mean = (square[(0, 0)].re + square[(1, 1)].re + square[(2, 2)].re) / 3.0;
-    let beside = square[(0, 1)].norm_sqr() + square[(0, 2)].norm_sqr() + square[(1, 2)].norm_sqr();
-    let along: f64 = (0..3).map(|i| (square[(i, i)].re - mean).powi(2)).sum();
-    let spread = ((along + 2.0 * beside) / 6.0).sqrt();
+    let columns = [0, 1, 2].map(|j| m.column(j));
+    let squares = columns.map(|column| column.norm_squared());
+    let [a, b, c] = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| columns[i].dotc(&columns[j]));
+    let mean = squares.iter().sum::<f64>() / 3.0;
+    let along = squares.map(|square| square - mean);
+    let beside = [a, b, c].map(|product| product.norm_sqr());
+    let spread = ((along.iter().map(|x| x * x).sum::<f64>() + 2.0 * beside.iter().sum::<f64>())
+        / 6.0)
+        .sqrt();
     if !(spread > 1e-14 * mean) {
         return [mean; 3];
     }
-    let shape =
-        (square - Matrix3::from_diagonal_element(Complex::from(mean))) / Complex::from(spread);
-    let third = (0.5 * shape.determinant().re).clamp(-1.0, 1.0).acos() / 3.0;
+    let determinant = along.iter().product::<f64>() + 2.0 * (a * c * b.conj()).re
+        - along[0] * beside[2]
+        - along[1] * beside[1]
+        - along[2] * beside[0];
+    let third = (0.5 * determinant / spread.powi(3)).clamp(-1.0, 1.0).acos() / 3.0;
     let [most, least] = [third, third + TAU / 3.0].map(|angle| mean + 2.0 * spread * angle.cos());
     [most, 3.0 * mean - most - least, least]
 }

@@ -27,13 +27,14 @@ use crate::drive_model::Electrical;
 use crate::record::Timing;
 use evolution::{Effort, Evolution};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
+use margins::Enough;
 use nalgebra::DVector;
 use std::f64::consts::TAU;
 
 /// What must be kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Largest singular value of the sensitivity.
+    /// Largest singular value of the sensitivity, on plants as they were found.
     pub ms: f64,
     /// Largest peak of the loop beyond its crossover.
     pub resonance_peak: f64,
@@ -86,7 +87,7 @@ pub struct Tuned {
 pub struct Sought<'a> {
     /// The machine as it was found, at places that differ much.
     pub found: &'a [Plant],
-    /// What it may be as well, there.
+    /// What it may be as well, there: gains may come nearer to [`MOST_MS`] on it.
     pub may_be: &'a [Plant],
     /// Both at places that differ little from those: searched on only if what is found does not keep [`MOST_MS`] there.
     pub elsewhere: &'a [Plant],
@@ -112,10 +113,10 @@ const VELOCITY: [f64; 2] = [3.0, 500.0];
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const TAIL_UNDER: f64 = 150.0;
 const LEAD_TO_HZ: f64 = 3_000.0;
-/// Frequency of a notch, Hz, the least over the lowest resonance, its width over its frequency, and its gain. A wide and deep one far below what
+/// Lowest frequency of a notch over the lowest resonance, the highest, Hz, its width over its frequency, and its gain. A wide and deep one far below what
 /// resonates, where the servos' corners are, would reject more at 30 Hz with a loop that half its gain makes unstable.
-const NOTCH_HZ: [f64; 2] = [10.0, 9_000.0];
 const NOTCH_FROM: f64 = 0.5;
+const NOTCH_TO_HZ: f64 = 9_000.0;
 const WIDTH: [f64; 2] = [0.01, 2.0];
 const DEPTH: [f64; 2] = [0.02, 1.0];
 /// The next velocity gain that is tried, over the one before, and halvings between the two that keep the limits and do not; where those of a shape
@@ -133,6 +134,10 @@ const EFFORT: Effort = Effort {
 const FIRST: usize = 100;
 const FOLLOWED: usize = 3;
 const LAST: usize = 200;
+/// The lowest resonance of a machine of which none is known.
+const NO_RESONANCE_HZ: f64 = 1_000.0;
+/// Largest singular value of the sensitivity on what a machine may be as well: a little less than [`MOST_MS`], for what no model has.
+const MAY_BE_MS: f64 = 1.97;
 /// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
 const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;
@@ -158,47 +163,49 @@ pub fn tune(
     if sought.found.is_empty() {
         return Err(TuningError::NoPlant);
     }
-    let here = [sought.found, sought.may_be].concat();
-    let everywhere = [&here, sought.elsewhere].concat();
-    let lowest_hz = resonances_hz.iter().copied().reduce(f64::min);
-    let on = |plants| Search {
-        plants,
+    let may_be = [sought.may_be, sought.elsewhere].concat();
+    let lowest_hz = resonances_hz.first().copied().unwrap_or(NO_RESONANCE_HZ);
+    let on = |found, may_be| Search {
+        found,
+        may_be,
         electrical,
         scheduled_inertia_kg_m2,
-        notch_hz: [
-            lowest_hz.map_or(NOTCH_HZ[0], |hz| NOTCH_FROM * hz),
-            NOTCH_HZ[1],
-        ],
+        notch_hz: [NOTCH_FROM * lowest_hz, NOTCH_TO_HZ],
         tick_s: timing.tick_s,
         limits,
     };
     let thinned: Vec<_> = sought.found.iter().map(Plant::thinned).collect();
-    let (first, last, whole) = (on(&thinned), on(&here), on(&everywhere));
-    let mut searches: Vec<_> = side_by_side(starts(lowest_hz), |shape| first.from(&shape))
-        .into_iter()
-        .flatten()
-        .collect();
+    let first = on(&thinned, &[]);
+    let last = on(sought.found, sought.may_be);
+    let whole = on(sought.found, &may_be);
+    let begun = starts(lowest_hz);
+    let mut searches: Vec<_> = begun.iter().filter_map(|shape| first.from(shape)).collect();
     searches.sort_by(|a, b| a.best().1.total_cmp(&b.best().1));
     searches.truncate(FOLLOWED);
-    let ended = side_by_side(searches, |search| last.followed(search));
-    let (shape, mut tuned) = last.best(ended).ok_or(TuningError::NotEvenSmall)?;
-    if !whole.margins(&tuned.gains).are_sound(MOST_MS) {
+    let ended: Vec<_> = searches
+        .into_iter()
+        .map(|search| last.followed(search))
+        .collect();
+    let (at, mut tuned) = last.best(&ended).ok_or(TuningError::NotEvenSmall)?;
+    if !whole.margins(&tuned.gains).0.are_sound(MOST_MS) {
         // A load that is off the centre swings otherwise at every place: slower gains of this shape may be far from the best that keep Ms there.
-        let search = Evolution::new(&unknowns(&shape, &tuned), EFFORT);
-        let everywhere = whole.best([whole.followed(search)]);
+        let ended = whole.followed(Evolution::new(at, EFFORT));
+        let everywhere = whole.best(std::slice::from_ref(&ended));
         tuned = everywhere.map_or(tuned, |(_, tuned)| tuned);
     }
     let mut gains = tuned.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
-    let margins = last.margins(&gains);
+    let here = [sought.found, sought.may_be].concat();
+    let margins = gains
+        .at_worst(&here, timing.tick_s)
+        .ok_or(TuningError::NoPlant)?;
     Ok(Tuned { gains, margins })
 }
 
 /// Shapes to start from: no notch at work, where resonances lie far above what the servos reach; two that are wide and shallow, about the lowest
 /// resonance and where the loop falls, which turn the phase of all that lies about them; and a narrow one at the lowest resonance with a wide one. What
 /// narrow ones at every pair of resonances lead to, these lead to as well; from a narrow one to a wide one a search hardly finds.
-fn starts(lowest_hz: Option<f64>) -> Vec<Shape> {
-    let lowest_hz = lowest_hz.unwrap_or(1_000.0);
+fn starts(lowest_hz: f64) -> Vec<Shape> {
     let none = [0.25, 0.2, lowest_hz, 0.4, 0.95, 2.0 * lowest_hz, 0.4, 0.95];
     let wide = [0.8, 1.25, 1.8].map(|times| {
         [1_500.0, 2_350.0].map(|second_hz| {
@@ -217,22 +224,6 @@ fn starts(lowest_hz: Option<f64>) -> Vec<Shape> {
     let narrow = [[1_400.0, 0.15], [2_000.0, 0.5]]
         .map(|[second_hz, gain]| [0.45, 0.45, lowest_hz, 0.25, 0.6, second_hz, 1.5, gain]);
     [&[none][..], wide.as_flattened(), &narrow].concat()
-}
-
-/// Of each its own, at the same time.
-fn side_by_side<A: Send, B: Send>(all: Vec<A>, of: impl Fn(A) -> B + Sync) -> Vec<B> {
-    let of = &of;
-    std::thread::scope(|scope| {
-        let threads: Vec<_> = (all.into_iter())
-            .map(|one| scope.spawn(move || of(one)))
-            .collect();
-        (threads.into_iter())
-            .map(|thread| match thread.join() {
-                Ok(found) => found,
-                Err(panic) => std::panic::resume_unwind(panic),
-            })
-            .collect()
-    })
 }
 
 fn unknowns(shape: &Shape, found: &Tuned) -> DVector<f64> {
@@ -265,7 +256,8 @@ fn over(value: f64, limit: f64) -> f64 {
 }
 
 struct Search<'a> {
-    plants: &'a [Plant],
+    found: &'a [Plant],
+    may_be: &'a [Plant],
     electrical: &'a [Electrical; 3],
     scheduled_inertia_kg_m2: f64,
     notch_hz: [f64; 2],
@@ -282,11 +274,10 @@ impl Search<'_> {
         Some(search)
     }
 
-    /// Shape and velocity gain at which a search ends.
-    fn followed(&self, mut search: Evolution) -> (Shape, f64) {
+    /// Where a search ends.
+    fn followed(&self, mut search: Evolution) -> DVector<f64> {
         search.go_on(LAST, |at| self.cost(at));
-        let (at, _) = search.best();
-        (shape_of(at), velocity_of(at))
+        search.best().0.clone()
     }
 
     /// How far notches are out of their ranges, where nothing else tells a search which way is back.
@@ -303,14 +294,14 @@ impl Search<'_> {
         let [position, corner, f1, w1, g1, f2, w2, g2] = *shape;
         let notch = |hz: f64, width: f64, gain: f64| Notch {
             frequency_hz: within(hz, self.notch_hz),
-            width_hz: within(hz * within(width, WIDTH), [1.0, NOTCH_HZ[1]]),
+            width_hz: within(hz * within(width, WIDTH), [1.0, NOTCH_TO_HZ]),
             gain: within(gain, DEPTH),
         };
         let volts_per_torque = |drive: &Electrical| drive.resistance_ohm / drive.motor_constant;
         let first = volts_per_torque(&self.electrical[0]);
         let inertia = match self.scheduled_inertia_kg_m2 {
             scheduled if scheduled > 0.0 => scheduled,
-            _ => self.plants[0].inertia[0],
+            _ => self.found[0].inertia[0],
         };
         let velocity_1_s = velocity / (first * inertia);
         let pivots = self.electrical.map(|drive| {
@@ -338,26 +329,34 @@ impl Search<'_> {
         }
     }
 
-    fn margins(&self, gains: &Gains) -> Margins {
-        (gains.at_worst(self.plants, self.tick_s))
-            .unwrap_or_else(|| unreachable!("there is a plant"))
+    /// The worst of all, exact where it is beyond the limits, and the largest Ms over its limit.
+    fn margins(&self, gains: &Gains) -> (Margins, f64) {
+        let Limits {
+            ms, resonance_peak, ..
+        } = *self.limits;
+        let of =
+            |plants, ms| gains.at_worst_with(plants, self.tick_s, &Enough { ms, resonance_peak });
+        let found = of(self.found, ms).unwrap_or_else(|| unreachable!("there is a plant"));
+        let share = found.ms / ms;
+        of(self.may_be, MAY_BE_MS).map_or((found, share), |may_be| {
+            (found.worse(may_be), share.max(may_be.ms / MAY_BE_MS))
+        })
     }
 
-    fn keeps(&self, margins: &Margins) -> bool {
-        margins.are_sound(self.limits.ms) && margins.resonance_peak <= self.limits.resonance_peak
+    fn keeps(&self, (margins, ms_over): &(Margins, f64)) -> bool {
+        margins.is_stable && *ms_over <= 1.0 && margins.resonance_peak <= self.limits.resonance_peak
     }
 
     fn cost(&self, unknowns: &DVector<f64>) -> f64 {
         let gains = self.gains(&shape_of(unknowns), velocity_of(unknowns));
-        let margins = self.margins(&gains);
+        let (margins, ms_over) = self.margins(&gains);
         if !margins.is_stable {
             return UNSTABLE;
         }
         self.loss(&Tuned { gains, margins })
             + self.outside(&shape_of(unknowns))
             + PENALTY
-                * (over(margins.ms, self.limits.ms)
-                    + over(margins.resonance_peak, self.limits.resonance_peak))
+                * (over(ms_over, 1.0) + over(margins.resonance_peak, self.limits.resonance_peak))
     }
 
     /// What is to be least of gains that keep the limits.
@@ -372,15 +371,11 @@ impl Search<'_> {
         tuned.margins.rejection.ln() + self.limits.tail * tails
     }
 
-    /// The best of these shapes, each with the largest velocity gain that keeps the limits.
-    fn best(&self, ends: impl IntoIterator<Item = (Shape, f64)>) -> Option<(Shape, Tuned)> {
-        ends.into_iter()
-            .filter_map(|(shape, velocity)| {
-                Some((
-                    shape,
-                    self.best_velocity(&shape, falling(ABOVE * velocity))?,
-                ))
-            })
+    /// The best of these, each with the largest velocity gain that keeps the limits.
+    fn best<'a>(&self, ends: &'a [DVector<f64>]) -> Option<(&'a DVector<f64>, Tuned)> {
+        let tuned = |at| self.best_velocity(&shape_of(at), falling(ABOVE * velocity_of(at)));
+        (ends.iter())
+            .filter_map(|at| Some((at, tuned(at)?)))
             .min_by(|(_, a), (_, b)| self.loss(a).total_cmp(&self.loss(b)))
     }
 
@@ -390,7 +385,10 @@ impl Search<'_> {
         let tuned = |velocity: f64| {
             let gains = self.gains(shape, velocity);
             let margins = self.margins(&gains);
-            self.keeps(&margins).then_some(Tuned { gains, margins })
+            self.keeps(&margins).then_some(Tuned {
+                gains,
+                margins: margins.0,
+            })
         };
         let mut high = None;
         for velocity in falling {

@@ -127,6 +127,15 @@ impl Plant {
 }
 
 impl Plant {
+    /// The same under a controller that schedules its gains by another load, the one that it knows.
+    #[must_use]
+    pub fn scheduled_by(self, known: &Self) -> Self {
+        Self {
+            inertia: known.inertia,
+            ..self
+        }
+    }
+
     /// At each third of its frequencies, if they are complete: enough to see valleys, in a third of the time.
     pub(super) fn thinned(&self) -> Self {
         let every = if self.is_complete { THINNED } else { 1 };

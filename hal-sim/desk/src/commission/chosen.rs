@@ -62,7 +62,7 @@ impl ZerosBy {
 const OTHER_LOAD: f64 = 0.5;
 
 /// What a platform may carry at times besides what is on it, kg.
-const MOST_ALSO_CARRIED_KG: f64 = 20.0;
+pub const MOST_ALSO_CARRIED_KG: f64 = 20.0;
 
 /// Why steps cannot be chosen.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

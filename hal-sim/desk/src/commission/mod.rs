@@ -40,7 +40,7 @@ mod touch;
 
 pub use backup::Backup;
 pub use by_hand::{GainsError, MOST_SENSITIVITY, Predicted, PutError, Tunable, Worth};
-pub use chosen::{ChoiceError, Chosen, ZerosBy};
+pub use chosen::{ChoiceError, Chosen, MOST_ALSO_CARRIED_KG, ZerosBy};
 pub use found::{CommissionError, Failure, Finding, Found, Number, Plot, Table};
 pub use report::page;
 pub use results::{Change, Conditions, Results, ResultsError, StepResult};

@@ -2,6 +2,7 @@
 
 use super::Done;
 use super::found::Number;
+use commissioning::drive_model::COPPER_1_K;
 use drawing::{read_text, write_whole};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -78,8 +79,6 @@ pub enum ResultsError {
 const LONGEST_BYTES: u64 = 1 << 20;
 /// Share of a number that is no change worth a word.
 const NO_CHANGE: f64 = 0.01;
-/// What copper's resistance gains with each kelvin, over itself.
-const COPPER_1_K: f64 = 0.0039;
 
 impl Results {
     /// From what the steps came to.

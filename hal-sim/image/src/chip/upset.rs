@@ -5,8 +5,8 @@
 
 use super::{Bench, ChipError, Period, elf_file};
 use hal_sim::machine::devices::{BridgeState, Stage, StageParameters};
-use hal_sim::parallel::of_all;
 use hal_sim::random::Random;
+use parallel::of_all;
 use std::fmt;
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::ops::Range;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 
-use hal_sim::parallel::cores;
+use parallel::cores;
 
 use super::arguments::ChipUpsets;
 use super::error::CliError;

@@ -8,7 +8,7 @@ pub(super) use calibrate::{
 };
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-pub(super) use commission::{Commission, Commissioned, Load, Tune};
+pub(super) use commission::{Commission, Commissioned, Tune};
 pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use super::FAILED;
-use super::arguments::{Commission, Commissioned, Load, Tune};
+use super::arguments::{Commission, Commissioned, Tune};
 use super::error::CliError;
 use super::view::endpoint;
 use crate::attended::SimulatedMachine;
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
         (_, Some(name)) => Chosen::only(name)?,
         _ => Chosen::all(zeros),
     }
-    .also_carrying(also_carries_kg(&arguments.load))?;
+    .also_carrying(arguments.load.also_carries)?;
     let answer = if arguments.yes {
         || Ok(())
     } else {
@@ -54,12 +54,8 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
 
 /// A new payload.
 pub(super) fn tune(arguments: &Tune) -> Result<ExitCode, CliError> {
-    let chosen = Chosen::tune().also_carrying(also_carries_kg(&arguments.load))?;
+    let chosen = Chosen::tune().also_carrying(arguments.load.also_carries)?;
     commission(&arguments.on, &chosen, wait_for_enter)
-}
-
-fn also_carries_kg(load: &Load) -> f64 {
-    load.also_carries.unwrap_or(0.0)
 }
 
 fn commission(

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::io::{Write, stdout};
 use std::process::ExitCode;
 
-use hal_sim::parallel::cores;
 use hal_sim::rig::Told;
 use hal_sim::rig::run::RunOptions;
 use hal_sim::rig::script::Script;
 use hal_sim::rig::sensitivity::{Sensitivity, compared, measure};
+use parallel::cores;
 
 use super::arguments::SensitivityRun;
 use super::error::CliError;

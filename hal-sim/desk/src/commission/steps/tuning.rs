@@ -10,7 +10,7 @@ use crate::commission::measured_loop::{MeasuredLoop, plot};
 use crate::commission::servo_gains;
 use crate::record::RecordError;
 use commissioning::chain::{Chain, Place};
-use commissioning::drive_model::DriveModel;
+use commissioning::drive_model::{DriveModel, Electrical};
 use commissioning::record::Timing;
 use commissioning::tuning::{Gains, Limits, MOST_MS, PLACES, Plant, SEARCHED, Sought, tune};
 
@@ -74,8 +74,10 @@ pub(super) fn run(
 }
 
 /// What gains are sought on: the model, and the loops as they were measured.
+#[derive(Clone)]
 struct Search<'a> {
     model: &'a DriveModel,
+    radius_m: f64,
     chain: Chain,
     /// With what it carries at times besides, where it does.
     heavier: Option<Chain>,
@@ -92,50 +94,67 @@ impl<'a> Search<'a> {
             ..*found
         };
         let more_kg = known.also_carries_kg;
-        Self {
+        let search = Self {
             model,
+            radius_m,
             chain,
             heavier: (more_kg > 0.0).then(|| chain.carrying(more_kg, radius_m)),
-            measured: (known.loops.iter())
-                .filter_map(|measured| measured.plant(found, radius_m))
-                .collect(),
-        }
+            measured: Vec::new(),
+        };
+        search.also_on(&known.loops)
     }
 
-    fn at(&self, chain: &Chain, places: &[[f64; 2]]) -> Vec<Plant> {
-        Plant::at_places(&self.model.electrical, chain, places, &Timing::STAGE)
+    /// The same on these loops as well.
+    fn also_on(&self, loops: &[MeasuredLoop]) -> Self {
+        let chain = &self.model.mechanical.chain;
+        let plants = (loops.iter()).filter_map(|measured| measured.plant(chain, self.radius_m));
+        let mut search = self.clone();
+        search.measured.extend(plants);
+        search
     }
 
-    /// With what it carries at times besides, as it was found and as it may be. The controller is not told of that, and schedules its gains by the load
+    /// With a load, as it was found, and as it may be: springs and dampers off, windings warm at work. The controller schedules its gains by the load
     /// that it knows.
-    fn heavier(&self, places: &[[f64; 2]]) -> Vec<Plant> {
-        let known = self.at(&self.chain, places);
-        let chains = self.heavier.iter().flat_map(|chain| {
-            let [softer, stiffer] = chain.as_it_may_be();
-            [*chain, softer, stiffer]
-        });
-        let of_chain = |chain| self.at(&chain, places).into_iter().zip(&known);
-        chains
-            .flat_map(of_chain)
-            .map(|(heavier, known)| Plant {
-                inertia: known.inertia,
-                ..heavier
-            })
-            .collect()
+    fn with_load(&self, chain: &Chain, places: &[[f64; 2]]) -> [Vec<Plant>; 2] {
+        let electrical = &self.model.electrical;
+        let at = |electrical, chain| Plant::at_places(electrical, chain, places, &Timing::STAGE);
+        let known = at(electrical, &self.chain);
+        let scheduled = |plants: Vec<Plant>| {
+            (plants.into_iter().zip(&known))
+                .map(|(plant, known)| plant.scheduled_by(known))
+                .collect::<Vec<_>>()
+        };
+        let [softer, stiffer] = &chain.as_it_may_be();
+        let at_work = (electrical.each_ref()).map(Electrical::at_work);
+        let may_be = [
+            (electrical, softer),
+            (electrical, stiffer),
+            (&at_work, chain),
+        ];
+        [
+            scheduled(at(electrical, chain)),
+            may_be
+                .map(|(electrical, chain)| scheduled(at(electrical, chain)))
+                .concat(),
+        ]
     }
 
-    /// The machine as it was found, and as it may be.
+    /// With what is on it, and with what it carries at times besides: as it was found, and as it may be.
     fn plants(&self, places: &[[f64; 2]]) -> [Vec<Plant>; 2] {
-        let as_it_may_be = self.chain.as_it_may_be();
-        let of_chain = |chain| self.at(chain, places);
-        let mut may_be: Vec<_> = as_it_may_be.iter().flat_map(of_chain).collect();
-        may_be.extend(self.heavier(places));
-        [self.at(&self.chain, places), may_be]
+        let [mut found, mut may_be] = self.with_load(&self.chain, places);
+        if let Some(heavier) = &self.heavier {
+            let [heavier, heavier_may_be] = self.with_load(heavier, places);
+            found.extend(heavier);
+            may_be.extend(heavier_may_be);
+        }
+        [found, may_be]
     }
 
     /// What gains are predicted to be with what it carries at times besides.
     fn tell_heavier(&self, found: &mut Found, gains: &Gains) {
-        if let Some(worst) = gains.at_worst(&self.heavier(&PLACES), Timing::STAGE.tick_s) {
+        let heavier = (self.heavier.iter()).flat_map(|chain| self.with_load(chain, &PLACES));
+        let heavier: Vec<_> = heavier.flatten().collect();
+        if let Some(worst) = gains.at_worst(&heavier, Timing::STAGE.tick_s) {
             found.push(Finding::new(
                 "Ms with what it also carries, as predicted",
                 format!("{:.2}; S(30 Hz) {:.3}", worst.ms, worst.rejection),
@@ -153,9 +172,8 @@ impl<'a> Search<'a> {
         [as_found, as_it_may_be, self.measured.clone()].concat()
     }
 
-    /// Gains to try, the most promising first: those of the search, and the former ones. All are slowed until the model at every place and the
-    /// loops as they were measured keep Ms.
-    fn candidates(&self, former: &Gains) -> Vec<Gains> {
+    /// Gains of the search, slowed until the model at every place and the loops as they were measured keep Ms; their worst rejection.
+    fn sought(&self) -> Option<(Gains, f64)> {
         let centre = Place::centre();
         let [as_found, as_it_may_be] = self.plants(&PLACES[..SEARCHED]);
         let elsewhere = self.plants(&PLACES[SEARCHED..]).concat();
@@ -171,16 +189,25 @@ impl<'a> Search<'a> {
             &Timing::STAGE,
             &Limits::WITH_FRICTION,
         );
-        let all = self.all();
-        let mut candidates: Vec<_> = (tuned.ok().map(|tuned| tuned.gains).into_iter())
-            .chain([*former])
-            .filter_map(|gains| gains.slowed_until_sound(&all, MOST_MS, Timing::STAGE.tick_s))
-            .collect();
-        candidates.sort_by(|a, b| a.1.rejection.total_cmp(&b.1.rejection));
+        self.sound(&tuned.ok()?.gains)
+    }
+
+    fn sound(&self, gains: &Gains) -> Option<(Gains, f64)> {
+        let (gains, worst) =
+            gains.slowed_until_sound(&self.all(), MOST_MS, Timing::STAGE.tick_s)?;
+        Some((gains, worst.rejection))
+    }
+
+    /// Gains to try, the most promising first: those of the search, and the former ones.
+    fn candidates(&self, former: &Gains) -> Vec<Gains> {
+        let candidates = [self.sought(), self.sound(former)];
+        let mut candidates: Vec<_> = candidates.into_iter().flatten().collect();
+        candidates.sort_by(|a, b| a.1.total_cmp(&b.1));
         candidates.into_iter().map(|(gains, _)| gains).collect()
     }
 
     /// The best that was measured with gains and with some that are as much slower or faster as the loops ask for, where it is better than what was.
+    /// Where loops do not keep Ms, gains are sought once more on what they show: near the edge a loop tells more of its plant than far from it.
     fn best(
         &self,
         bench: &mut Bench<'_>,
@@ -195,7 +222,7 @@ impl<'a> Search<'a> {
         } else {
             f64::INFINITY
         };
-        for _ in 0..MOST_TRIES {
+        for tries in 0..MOST_TRIES {
             let after = match with(bench, known, self.model, [&gains, former])? {
                 Ok(after) => after,
                 Err(why) => {
@@ -211,7 +238,7 @@ impl<'a> Search<'a> {
             let is_better = ms <= MOST_MS && rejection < least;
             if is_better {
                 least = rejection;
-                best = Some((gains, after));
+                best = Some((gains, after.clone()));
             } else {
                 found.push(Finding::told("tried, and not kept", told(&after)));
             }
@@ -220,13 +247,15 @@ impl<'a> Search<'a> {
             }
             let by = (AIMED_MS / ms).powf(MS_POWER);
             let next = gains.slowed(by.clamp(LEAST_BY, MOST_BY));
-            gains = if by < 1.0 {
-                next
-            } else {
+            gains = if ms <= MOST_MS {
                 match self.sound_and_faster(&next, &gains) {
                     Some(faster) => faster,
                     None => break,
                 }
+            } else if tries == 0 {
+                (self.also_on(&after).sought()).map_or(next, |(sought, _)| sought)
+            } else {
+                next
             };
         }
         Ok(best)
@@ -235,8 +264,7 @@ impl<'a> Search<'a> {
     /// Gains slowed until they keep Ms, where they are faster than others still. The lines of a measured loop lie far apart: a resonance between two of
     /// them only the model shows.
     fn sound_and_faster(&self, gains: &Gains, others: &Gains) -> Option<Gains> {
-        let all = self.all();
-        let (sound, _) = gains.slowed_until_sound(&all, MOST_MS, Timing::STAGE.tick_s)?;
+        let (sound, _) = self.sound(gains)?;
         (sound.least_velocity_v_s_rad() > others.least_velocity_v_s_rad()).then_some(sound)
     }
 }

@@ -4,6 +4,7 @@ use super::super::number::{whole, within};
 use super::super::stage::Machine;
 use super::controller::Controller;
 use clap::Args;
+use desk::commission::MOST_ALSO_CARRIED_KG;
 use std::path::PathBuf;
 
 /// Commissioning.
@@ -48,8 +49,8 @@ pub(in super::super) struct Tune {
 pub(in super::super) struct Load {
     /// Weight that stands on the platform at times besides what is on it now, at most: a cylinder of 50 mm radius in its middle. Gains and limits of
     /// motion are for both.
-    #[arg(long, value_name = "KG", value_parser = within(0.0..=20.0))]
-    pub(in super::super) also_carries: Option<f64>,
+    #[arg(long, value_name = "KG", default_value_t = 0.0, value_parser = within(0.0..=MOST_ALSO_CARRIED_KG))]
+    pub(in super::super) also_carries: f64,
 }
 
 /// The machine that is commissioned, tuned or looked at.
