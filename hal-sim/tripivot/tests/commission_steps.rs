@@ -1,5 +1,6 @@
 //! Single steps of commissioning, on machines whose controllers have been told of them.
 
+use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
 use commissioning::tuning::{Gains, MOST_MS, PLACES, Plant};
 use desk::commission::{ChoiceError, Chosen, Finding, GainsError, Machine, PutError, run};
@@ -136,21 +137,25 @@ fn ends_that_are_not_where_they_are_drawn_are_refused_and_nothing_is_changed() {
     assert_eq!(*stage.parameters(), before);
 }
 
-/// Ms of gains on the true machine with so many kg more on its platform.
-fn ms_with_more(stage: &StageParameters, more_kg: f64, parameters: &Parameters) -> f64 {
+/// Ms of gains on the true machine with so many kg more on its platform, its windings cold, and as warm as at work.
+fn ms_with_more(stage: &StageParameters, more_kg: f64, parameters: &Parameters) -> [f64; 2] {
     let (chain, electrical) = loop_model(stage);
     let heavier = chain.carrying(more_kg, stage.plant.track_radius_m);
-    let at = |chain| Plant::at_places(&electrical, chain, &PLACES, &Timing::STAGE);
-    let plants: Vec<_> = (at(&heavier).into_iter().zip(&at(&chain)))
-        .map(|(heavier, known)| heavier.scheduled_by(known))
-        .collect();
-    let worst = Gains::of(parameters).at_worst(&plants, Timing::STAGE.tick_s);
-    worst.expect("a plant").ms
+    let at_work = electrical.each_ref().map(Electrical::at_work);
+    [electrical, at_work].map(|electrical| {
+        let at = |chain| Plant::at_places(&electrical, chain, &PLACES, &Timing::STAGE);
+        let plants: Vec<_> = (at(&heavier).into_iter().zip(&at(&chain)))
+            .map(|(heavier, known)| heavier.scheduled_by(known))
+            .collect();
+        let worst = Gains::of(parameters).at_worst(&plants, Timing::STAGE.tick_s);
+        worst.expect("a plant").ms
+    })
 }
 
 #[test]
 fn gains_and_limits_are_for_what_the_platform_also_carries() {
     const MORE_KG: f64 = 5.0;
+    const MOST_MS_AT_WORK: f64 = 2.05;
     let mut stage = StageParameters::REFERENCE;
     stage.plant.imperfections = Imperfections::ALL;
     let flash = SettingsFlash::in_memory();
@@ -173,9 +178,11 @@ fn gains_and_limits_are_for_what_the_platform_also_carries() {
     let [one, both] = [&for_one, for_both].map(|all| ms_with_more(&stage, MORE_KG, all));
     let accelerations = [&for_one, for_both].map(|all| all.limits.pivot_acceleration_rad_s2);
     println!(
-        "Ms with {MORE_KG} kg more {one:.2}, with gains for both {both:.2}; {accelerations:.0?}"
+        "Ms with {MORE_KG} kg more {one:.2?}, with gains for both {both:.2?}; {accelerations:.0?}"
     );
-    assert!(one > MOST_MS && both < MOST_MS);
+    assert!(one[0] > MOST_MS && both[0] < MOST_MS);
+    // What is sought is less, on a model. Gains that are not for warm windings have 2.11.
+    assert!(both[1] < MOST_MS_AT_WORK);
     assert!(accelerations[1] < 0.53 * accelerations[0]);
     for weight in [-1.0, 21.0, f64::NAN] {
         let refused = Chosen::tune().also_carrying(weight).err();

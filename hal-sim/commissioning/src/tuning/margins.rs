@@ -205,9 +205,12 @@ impl<'a> Servos<'a> {
     /// With gains as they are scheduled for what the pivots move there.
     fn at(&self, plant: &Plant) -> impl Iterator<Item = [Complex<f64>; 3]> {
         let scheduled = self.scheduled_inertia_kg_m2;
-        let shares = (plant.inertia).map(|inertia| match scheduled > 0.0 {
-            true => inertia / scheduled,
-            false => 1.0,
+        let shares = (plant.inertia).map(|inertia| {
+            if scheduled > 0.0 {
+                inertia / scheduled
+            } else {
+                1.0
+            }
         });
         (self.responses.iter()).map(move |at| [0, 1, 2].map(|i| at[i] * shares[i]))
     }
@@ -261,9 +264,12 @@ impl<'a> Servos<'a> {
         let beyond = (plant.hz.iter()).position(|hz| *hz > BEYOND * found.crossover_hz);
         let first = beyond.unwrap_or(loops.len()).max(1);
         let sizes: Vec<f64> = (loops.iter().skip(first - 1))
-            .map(|l| match l.norm() > enough.resonance_peak {
-                true => largest_singular(l),
-                false => 0.0,
+            .map(|l| {
+                if l.norm() > enough.resonance_peak {
+                    largest_singular(l)
+                } else {
+                    0.0
+                }
             })
             .collect();
         for beside in sizes.windows(3) {

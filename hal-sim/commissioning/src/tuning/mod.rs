@@ -195,9 +195,9 @@ pub fn tune(
     }
     let mut gains = tuned.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
-    let here = [sought.found, sought.may_be].concat();
-    let margins = gains
-        .at_worst(&here, timing.tick_s)
+    let margins = ([sought.found, sought.may_be].into_iter())
+        .filter_map(|plants| gains.at_worst(plants, timing.tick_s))
+        .reduce(Margins::worse)
         .ok_or(TuningError::NoPlant)?;
     Ok(Tuned { gains, margins })
 }
