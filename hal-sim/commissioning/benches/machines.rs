@@ -1,10 +1,10 @@
-//! How well unknown machines are identified, as tables: `cargo bench -p commissioning`. `-- N` takes N machines in place of 20, `-- N V W S` V volts rms, a
-//! rate of W rad/s, and machines from seed S on.
+//! How well unknown machines are identified, as tables: `cargo bench -p commissioning --bench machines`. `-- N` takes N machines in place of 20,
+//! `-- N V W S` V volts rms, a rate of W rad/s, and machines from seed S on.
 
 #[path = "../tests/machine/mod.rs"]
 mod machine;
 
-use machine::truth::{NAMES, errors, identify};
+use machine::truth::{NAMES, OFF_NAMES, errors, identify, off_over_uncertainty};
 use machine::{PLAN, Plan, unknown};
 
 fn main() {
@@ -17,7 +17,7 @@ fn main() {
         rate_rad_s: numbers.get(2).copied().unwrap_or(PLAN.rate_rad_s),
         ..PLAN
     };
-    let (mut all, mut residuals): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
+    let (mut all, mut off, mut residuals): (Vec<_>, Vec<_>, Vec<_>) = Default::default();
     let first = numbers.get(3).copied().unwrap_or(0.0) as u64;
     for seed in first..first + machines {
         let parameters = unknown(seed);
@@ -30,6 +30,7 @@ fn main() {
                 found.model
             );
         }
+        off.push(off_over_uncertainty(&parameters, &found.model));
         residuals.push(found.model.mechanical.residual);
     }
     println!(
@@ -57,6 +58,14 @@ fn main() {
         100.0 * most,
         100.0 * worst
     );
+    println!();
+    println!("| off, over what it may be off | median | 90 % | worst |");
+    println!("|---|---|---|---|");
+    for (k, name) in OFF_NAMES.iter().enumerate() {
+        let mut shares: Vec<f64> = off.iter().map(|off| off[k]).collect();
+        let [median, most, worst] = spread(&mut shares);
+        println!("| {name} | {median:.2} | {most:.2} | {worst:.2} |");
+    }
 }
 
 fn spread(sizes: &mut [f64]) -> [f64; 3] {

@@ -21,12 +21,18 @@ use std::f64::consts::TAU;
 /// Dynamic stiffness of the motor on its spring, over the spring's, under which the motor's angle does not follow from the ring's.
 const LEAST_APART: f64 = 0.25;
 
-/// What springs and dampers of an identified machine may be, over what they were found as. Of 26 unknown machines the guides' stiffness was found to
-/// 1.9 % and their damping to 0.81 to 1.16 of what it is; the transmission's stiffness to 5 % but for two (6 and 8 %), its damping to 0.6 to 2.5 times:
-/// play softens it where nothing bears on the gears, and damps where it is crossed.
-const UNCERTAIN_SPRINGS: [f64; 2] = [0.95, 1.05];
-const UNCERTAIN_DAMPERS: f64 = 0.7;
-const UNCERTAIN_TRANSMISSION_DAMPER: f64 = 0.5;
+/// How far springs and dampers may be from what they were found as, as logarithms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Of the transmission's springs.
+    pub stiffness: f64,
+    /// Of its dampers.
+    pub damping: f64,
+    /// Of the springs across the guides.
+    pub guide_stiffness: f64,
+    /// Of their dampers.
+    pub guide_damping: f64,
+}
 
 /// Radius of a load of which only the mass is told, m.
 pub const CYLINDER_M: f64 = 0.05;
@@ -158,25 +164,16 @@ impl Chain {
         }
     }
 
-    /// What an identified machine may be as well: springs off either way, and dampers weaker.
+    /// What a machine that was found with this uncertainty may be as well: springs off either way, and dampers weaker.
     #[must_use]
-    pub fn as_it_may_be(&self) -> [Self; 2] {
-        UNCERTAIN_SPRINGS.map(|springs| Self {
-            damping: UNCERTAIN_TRANSMISSION_DAMPER * self.damping,
-            ..self.scaled(springs, UNCERTAIN_DAMPERS)
-        })
-    }
-
-    /// The same with all springs so many times as stiff, and dampers so many times as strong. Resonances go with the root of the first.
-    #[must_use]
-    pub fn scaled(&self, springs: f64, dampers: f64) -> Self {
-        Self {
-            stiffness: springs * self.stiffness,
-            damping: dampers * self.damping,
-            guide_stiffness: springs * self.guide_stiffness,
-            guide_damping: dampers * self.guide_damping,
+    pub fn as_it_may_be(&self, off: &Uncertainty) -> [Self; 2] {
+        [-1.0, 1.0].map(|side| Self {
+            stiffness: (side * off.stiffness).exp() * self.stiffness,
+            damping: (-off.damping).exp() * self.damping,
+            guide_stiffness: (side * off.guide_stiffness).exp() * self.guide_stiffness,
+            guide_damping: (-off.guide_damping).exp() * self.guide_damping,
             ..*self
-        }
+        })
     }
 
     /// Rate of a motor that gives a torque while its ring turns at a rate: the transmission winds up between them. `None` beside the

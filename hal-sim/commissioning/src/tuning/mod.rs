@@ -124,15 +124,15 @@ const DEPTH: [f64; 2] = [0.02, 1.0];
 const NEXT: f64 = 0.83;
 const HALVINGS: usize = 5;
 const ABOVE: f64 = 1.2;
-/// A search; generations from each start, how many searches are followed from there, and for how many generations at most. The valleys are many, and
-/// their first generations hardly tell how deep they are. Five times as much finds 0 to 4 % more.
+/// A search; generations from each start, how many searches are followed from there, on all that it may be and on what was found, and for how many
+/// generations at most. The valleys are many, and their first generations hardly tell how deep they are.
 const EFFORT: Effort = Effort {
     step: 0.3,
     children: 24,
     until: 1e-3,
 };
-const FIRST: usize = 100;
-const FOLLOWED: usize = 3;
+const FIRST: usize = 60;
+const FOLLOWED: [usize; 2] = [2, 1];
 const LAST: usize = 200;
 /// The lowest resonance of a machine of which none is known.
 const NO_RESONANCE_HZ: f64 = 1_000.0;
@@ -145,10 +145,10 @@ const UNSTABLE: f64 = 100.0;
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
 type Shape = [f64; 8];
 
-/// Gains for plants at several places and with several loads, and for those that they may be as well: valleys are sought on those that were found,
-/// which takes less time and does not get lost; the last search, and what is found, keeps the limits on all. `resonances_hz`: of the model in the
-/// middle of the disk ([`crate::chain::Chain::resonances_hz`]); the lowest says where notches are tried. `scheduled_inertia_kg_m2`: what the gains are
-/// for, or 0.
+/// Gains for plants at several places and with several loads, and for those that they may be as well: searches start where what was found keeps the
+/// limits, and are ranked on a third of the frequencies of all plants; the last search, and what is found, keeps the limits on all. `resonances_hz`: of
+/// the model in the middle of the disk ([`crate::chain::Chain::resonances_hz`]); the lowest says where notches are tried. `scheduled_inertia_kg_m2`:
+/// what the gains are for, or 0.
 ///
 /// # Errors
 /// [`TuningError`].
@@ -174,24 +174,36 @@ pub fn tune(
         tick_s: timing.tick_s,
         limits,
     };
-    let thinned: Vec<_> = sought.found.iter().map(Plant::thinned).collect();
-    let first = on(&thinned, &[]);
+    let thinned = |plants: &[Plant]| plants.iter().map(Plant::thinned).collect::<Vec<_>>();
+    let [found, also] = [sought.found, sought.may_be].map(thinned);
+    let as_found = on(&found, &[]);
+    let as_it_may_be = on(&found, &also);
     let last = on(sought.found, sought.may_be);
     let whole = on(sought.found, &may_be);
     let begun = starts(lowest_hz);
-    let mut searches: Vec<_> = begun.iter().filter_map(|shape| first.from(shape)).collect();
-    searches.sort_by(|a, b| a.best().1.total_cmp(&b.best().1));
-    searches.truncate(FOLLOWED);
-    let ended: Vec<_> = searches
-        .into_iter()
+    // Where a machine may be much, most searches on all of it end at gains that hardly move it, and one on what was found does not.
+    let ended: Vec<_> = ([&as_it_may_be, &as_found].into_iter().zip(FOLLOWED))
+        .flat_map(|(first, followed)| {
+            let start = |shape| first.start(shape).or_else(|| as_found.start(shape));
+            let mut searches: Vec<_> = (begun.iter().filter_map(start))
+                .map(|start| first.begun(&start))
+                .collect();
+            searches.sort_by(|a, b| a.best().1.total_cmp(&b.best().1));
+            searches.truncate(followed);
+            searches
+        })
         .map(|search| last.followed(search))
         .collect();
-    let (at, mut tuned) = last.best(&ended).ok_or(TuningError::NotEvenSmall)?;
+    let (_, mut tuned) = last.best(&ended).ok_or(TuningError::NotEvenSmall)?;
     if !whole.margins(&tuned.gains).0.are_sound(MOST_MS) {
-        // A load that is off the centre swings otherwise at every place: slower gains of this shape may be far from the best that keep Ms there.
-        let ended = whole.followed(Evolution::new(at, EFFORT));
-        let everywhere = whole.best(std::slice::from_ref(&ended));
-        tuned = everywhere.map_or(tuned, |(_, tuned)| tuned);
+        // A load that is off the centre swings otherwise at every place: slower gains of this shape may be far from the best that keep Ms there. From
+        // gains that do not keep it, a search may end at some that hardly move the stage.
+        let everywhere = whole.best(&ended).and_then(|(at, slower)| {
+            let start = Evolution::new(&unknowns(&shape_of(at), &slower), EFFORT);
+            let ended = whole.followed(start);
+            Some(whole.best(std::slice::from_ref(&ended))?.1)
+        });
+        tuned = everywhere.unwrap_or(tuned);
     }
     let mut gains = tuned.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
@@ -266,12 +278,17 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The first generations from a shape, with the largest velocity gain at which it keeps the limits; `None` where there is none.
-    fn from(&self, shape: &Shape) -> Option<Evolution> {
+    /// A shape with the largest velocity gain at which it keeps the limits; `None` where there is none.
+    fn start(&self, shape: &Shape) -> Option<DVector<f64>> {
         let found = self.best_velocity(shape, falling(VELOCITY[1]))?;
-        let mut search = Evolution::new(&unknowns(shape, &found), EFFORT);
+        Some(unknowns(shape, &found))
+    }
+
+    /// The first generations.
+    fn begun(&self, start: &DVector<f64>) -> Evolution {
+        let mut search = Evolution::new(start, EFFORT);
         search.go_on(FIRST, |at| self.cost(at));
-        Some(search)
+        search
     }
 
     /// Where a search ends.

@@ -8,6 +8,7 @@ use commissioning::frequency_response::{Line, frequency_response};
 use commissioning::friction::friction;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::plant::Plant;
+use hal_sim::rig::loop_model;
 use nalgebra::{DMatrix, Matrix3};
 use std::f64::consts::TAU;
 
@@ -153,6 +154,29 @@ pub fn errors(parameters: &StageParameters, found: &Identified) -> [f64; 13] {
         worst(&|i| electrical[i].dead_time_v - lost_v),
         worst(&|i| electrical[i].motor_constant / constant - 1.0),
         worst(&|i| found_inertia[(i, i)] / inertia[(i, i)] - 1.0),
+    ]
+}
+
+/// Springs and dampers, in this order.
+pub const OFF_NAMES: [&str; 4] = [
+    "transmission's stiffness",
+    "its damping, weaker",
+    "guides' stiffness",
+    "their damping, weaker",
+];
+
+/// How far they are from what was found, over what that says that they may be. Dampers that are stronger do no harm.
+pub fn off_over_uncertainty(parameters: &StageParameters, found: &DriveModel) -> [f64; 4] {
+    let (truth, _) = loop_model(parameters);
+    let analog = &parameters.analog;
+    let torque = analog.supply_gain * analog.current_gain.iter().sum::<f64>() / 3.0;
+    let (chain, most) = (&found.mechanical.chain, found.mechanical.uncertainty());
+    let off = |found: f64, truth: f64| (found / (truth * torque)).ln();
+    [
+        off(chain.stiffness, truth.stiffness).abs() / most.stiffness,
+        off(chain.damping, truth.damping).max(0.0) / most.damping,
+        off(chain.guide_stiffness, truth.guide_stiffness).abs() / most.guide_stiffness,
+        off(chain.guide_damping, truth.guide_damping).max(0.0) / most.guide_damping,
     ]
 }
 

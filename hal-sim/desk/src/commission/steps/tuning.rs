@@ -124,7 +124,8 @@ impl<'a> Search<'a> {
                 .map(|(plant, known)| plant.scheduled_by(known))
                 .collect::<Vec<_>>()
         };
-        let [softer, stiffer] = &chain.as_it_may_be();
+        let off = self.model.mechanical.uncertainty();
+        let [softer, stiffer] = &chain.as_it_may_be(&off);
         let at_work = (electrical.each_ref()).map(Electrical::at_work);
         let may_be = [
             (electrical, softer),
