@@ -124,16 +124,27 @@ const DEPTH: [f64; 2] = [0.02, 1.0];
 const NEXT: f64 = 0.83;
 const HALVINGS: usize = 5;
 const ABOVE: f64 = 1.2;
-/// A search; generations from each start, how many searches are followed from there, on all that it may be and on what was found, and for how many
-/// generations at most. The valleys are many, and their first generations hardly tell how deep they are.
+/// A search, and for how many generations it is followed at most. The valleys are many, and their first generations hardly tell how deep they are.
 const EFFORT: Effort = Effort {
     step: 0.3,
     children: 24,
     until: 1e-3,
 };
-const FIRST: usize = 60;
-const FOLLOWED: [usize; 2] = [2, 1];
 const LAST: usize = 200;
+/// Generations from each start, and how many searches are followed from there: on plants of which all is known; on all that a machine may be, and on
+/// what was found, where it may be more.
+const ON_CERTAIN: First = First {
+    generations: 100,
+    followed: 3,
+};
+const ON_ALL: First = First {
+    generations: 60,
+    followed: 2,
+};
+const ON_FOUND: First = First {
+    generations: 60,
+    followed: 1,
+};
 /// The lowest resonance of a machine of which none is known.
 const NO_RESONANCE_HZ: f64 = 1_000.0;
 /// Largest singular value of the sensitivity on what a machine may be as well: a little less than [`MOST_MS`], for what no model has.
@@ -141,6 +152,11 @@ const MAY_BE_MS: f64 = 1.97;
 /// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
 const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;
+
+struct First {
+    generations: usize,
+    followed: usize,
+}
 
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
 type Shape = [f64; 8];
@@ -182,14 +198,19 @@ pub fn tune(
     let whole = on(sought.found, &may_be);
     let begun = starts(lowest_hz);
     // Where a machine may be much, most searches on all of it end at gains that hardly move it, and one on what was found does not.
-    let ended: Vec<_> = ([&as_it_may_be, &as_found].into_iter().zip(FOLLOWED))
-        .flat_map(|(first, followed)| {
-            let start = |shape| first.start(shape).or_else(|| as_found.start(shape));
+    let firsts = if also.is_empty() {
+        vec![(&as_found, ON_CERTAIN)]
+    } else {
+        vec![(&as_it_may_be, ON_ALL), (&as_found, ON_FOUND)]
+    };
+    let ended: Vec<_> = (firsts.into_iter())
+        .flat_map(|(on, first)| {
+            let start = |shape| on.start(shape).or_else(|| as_found.start(shape));
             let mut searches: Vec<_> = (begun.iter().filter_map(start))
-                .map(|start| first.begun(&start))
+                .map(|start| on.begun(&start, first.generations))
                 .collect();
             searches.sort_by(|a, b| a.best().1.total_cmp(&b.best().1));
-            searches.truncate(followed);
+            searches.truncate(first.followed);
             searches
         })
         .map(|search| last.followed(search))
@@ -285,9 +306,9 @@ impl Search<'_> {
     }
 
     /// The first generations.
-    fn begun(&self, start: &DVector<f64>) -> Evolution {
+    fn begun(&self, start: &DVector<f64>, generations: usize) -> Evolution {
         let mut search = Evolution::new(start, EFFORT);
-        search.go_on(FIRST, |at| self.cost(at));
+        search.go_on(generations, |at| self.cost(at));
         search
     }
 
