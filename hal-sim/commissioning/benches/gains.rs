@@ -1,104 +1,81 @@
 //! What gains that are sought for identified machines do on the machines as they are, as a table: `cargo bench -p commissioning --bench gains`;
-//! `-- FIRST LAST` takes these unknown machines. No friction that holds the stage off, no play, no loop that is measured: the search alone.
+//! `-- FIRST LAST` takes these unknown machines. The search alone: no loop is measured, and what gains are judged on has neither friction nor play.
 
 #[path = "../tests/machine/mod.rs"]
 mod machine;
 
-use commissioning::chain::{Chain, Place, Uncertainty};
+use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::tuning::{
     Gains, Limits, MOST_MS, Margins, PLACES, Plant, SEARCHED, Sought, tune,
 };
 use hal_sim::rig::loop_model;
-use machine::truth::identify;
+use machine::truth::{identify, spread};
 use machine::{PLAN, TIMING, unknown};
 use parallel::{cores, of_all};
 
 const MACHINES: [u64; 2] = [1, 24];
 
-/// What gains are sought for.
-struct Machine {
-    chain: Chain,
-    electrical: [Electrical; 3],
-    /// Where it was identified.
-    off: Option<Uncertainty>,
-}
-
-impl Machine {
-    fn at(&self, places: &[[f64; 2]]) -> Vec<Plant> {
-        Plant::at_places(&self.electrical, &self.chain, places, &TIMING)
-    }
-
-    /// What it may be as well, as the step `tuning` takes it.
-    fn may_be(&self, places: &[[f64; 2]]) -> Vec<Plant> {
-        let Some(off) = &self.off else {
-            return Vec::new();
-        };
-        let [softer, stiffer] = &self.chain.as_it_may_be(off);
-        let cold = &self.electrical;
-        let warm = &cold.each_ref().map(Electrical::at_work);
-        [(cold, softer), (cold, stiffer), (warm, &self.chain)]
-            .map(|(electrical, chain)| Plant::at_places(electrical, chain, places, &TIMING))
-            .concat()
-    }
-
-    /// Gains that are sound on all of that, and their worst margins there.
-    fn sought(&self, limits: &Limits) -> (Gains, Margins) {
-        let centre = Place::centre();
-        let of = |places| [self.at(places), self.may_be(places)];
-        let [found, may_be] = of(&PLACES[..SEARCHED]);
-        let elsewhere = of(&PLACES[SEARCHED..]).concat();
-        let tuned = tune(
-            Sought {
-                found: &found,
-                may_be: &may_be,
-                elsewhere: &elsewhere,
-            },
-            &self.electrical,
-            &self.chain.resonances_hz(&centre),
-            self.chain.inertia(&centre)[(0, 0)],
-            &TIMING,
-            limits,
-        );
-        let all = [found, may_be, elsewhere].concat();
-        let gains = tuned.expect("there are gains").gains;
-        let sound = gains.slowed_until_sound(&all, MOST_MS, TIMING.tick_s);
-        sound.expect("small gains are sound")
-    }
+/// Gains that are sound at all places, on plants as they are found and as they may be, and their worst margins there.
+fn sought(
+    (chain, electrical): (&Chain, &[Electrical; 3]),
+    plants: impl Fn(&[[f64; 2]]) -> [Vec<Plant>; 2],
+    limits: &Limits,
+) -> (Gains, Margins) {
+    let centre = Place::centre();
+    let [found, may_be] = plants(&PLACES[..SEARCHED]);
+    let elsewhere = plants(&PLACES[SEARCHED..]).concat();
+    let tuned = tune(
+        Sought {
+            found: &found,
+            may_be: &may_be,
+            elsewhere: &elsewhere,
+        },
+        electrical,
+        &chain.resonances_hz(&centre),
+        chain.inertia(&centre)[(0, 0)],
+        &TIMING,
+        limits,
+    );
+    let all = [found, may_be, elsewhere].concat();
+    let gains = tuned.expect("there are gains").gains;
+    let sound = gains.slowed_until_sound(&all, MOST_MS, TIMING.tick_s);
+    sound.expect("small gains are sound")
 }
 
 /// S(30 Hz) as told, on the true machine and over the best there; Ms there.
 fn row(seed: u64) -> [f64; 4] {
     let parameters = unknown(seed);
-    let (chain, mut electrical) = loop_model(&parameters);
     let identified = identify(&parameters, &PLAN);
+    let (chain, mut electrical) = loop_model(&parameters);
     // As warm as they were then.
     for (drive, warmer_k) in electrical.iter_mut().zip(identified.excited.warmer_k) {
         drive.resistance_ohm *= 1.0 + parameters.plant.winding.resistance_per_k * warmer_k;
     }
-    let truth = Machine {
-        chain,
-        electrical,
-        off: None,
+    let truth = |places: &[[f64; 2]]| {
+        let mut plants = Plant::at_places(&electrical, &chain, places, &TIMING);
+        // Volts are those of the controller's meter.
+        for response in plants.iter_mut().flat_map(|plant| &mut plant.response) {
+            *response = response.scale(1.0 / parameters.analog.supply_gain);
+        }
+        plants
     };
     let model = identified.model;
-    let found = Machine {
-        chain: Chain {
-            along_stiffness: 0.0,
-            along_damping: 0.0,
-            ..model.mechanical.chain
-        },
-        electrical: model.electrical,
-        off: Some(model.mechanical.uncertainty()),
+    let found_chain = model.mechanical.chain.sliding();
+    let found = |places: &[[f64; 2]]| {
+        [
+            Plant::at_places(&model.electrical, &found_chain, places, &TIMING),
+            Plant::as_they_may_be(&model, &found_chain, places, &TIMING),
+        ]
     };
-    let (gains, told) = found.sought(&Limits::WITH_FRICTION);
-    let mut plants = truth.at(&PLACES);
-    // Volts are those of the controller's meter.
-    for response in plants.iter_mut().flat_map(|plant| &mut plant.response) {
-        *response = response.scale(1.0 / parameters.analog.supply_gain);
-    }
-    let there = (gains.at_worst(&plants, TIMING.tick_s)).expect("a plant");
-    let best = truth.sought(&Limits::ON_MODEL).1;
+    let (gains, told) = sought(
+        (&found_chain, &model.electrical),
+        found,
+        &Limits::WITH_FRICTION,
+    );
+    let certain = |places: &[[f64; 2]]| [truth(places), Vec::new()];
+    let (_, best) = sought((&chain, &electrical), certain, &Limits::ON_MODEL);
+    let there = (gains.at_worst(&truth(&PLACES), TIMING.tick_s)).expect("a plant");
     [
         told.rejection,
         there.rejection,
@@ -123,9 +100,7 @@ fn main() {
     }
     for (name, k) in [("over the best there", 2), ("Ms there", 3)] {
         let mut all: Vec<f64> = rows.iter().map(|row| row[k]).collect();
-        all.sort_by(f64::total_cmp);
-        let [median, most, worst] =
-            [0.5, 0.9, 1.0].map(|part| all[((all.len() - 1) as f64 * part).round() as usize]);
+        let [median, most, worst] = spread(&mut all);
         println!("{name}: median {median:.2}, 90 % {most:.2}, worst {worst:.2}");
     }
 }

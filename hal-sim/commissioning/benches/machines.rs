@@ -4,7 +4,7 @@
 #[path = "../tests/machine/mod.rs"]
 mod machine;
 
-use machine::truth::{NAMES, OFF_NAMES, errors, identify, off_over_uncertainty};
+use machine::truth::{NAMES, OFF_NAMES, errors, identify, off_over_uncertainty, spread};
 use machine::{PLAN, Plan, unknown};
 
 fn main() {
@@ -66,9 +66,4 @@ fn main() {
         let [median, most, worst] = spread(&mut shares);
         println!("| {name} | {median:.2} | {most:.2} | {worst:.2} |");
     }
-}
-
-fn spread(sizes: &mut [f64]) -> [f64; 3] {
-    sizes.sort_by(f64::total_cmp);
-    [0.5, 0.9, 1.0].map(|part| sizes[(((sizes.len() - 1) as f64 * part).round()) as usize])
 }

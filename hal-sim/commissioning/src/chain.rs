@@ -164,6 +164,17 @@ impl Chain {
         }
     }
 
+    /// With carriages that slide: they hold nothing along their guides. A loop has to be stable then, too, and without a spring to the ground each plant
+    /// is an integrator.
+    #[must_use]
+    pub fn sliding(&self) -> Self {
+        Self {
+            along_stiffness: 0.0,
+            along_damping: 0.0,
+            ..*self
+        }
+    }
+
     /// What a machine that was found with this uncertainty may be as well: springs off either way, and dampers weaker.
     #[must_use]
     pub fn as_it_may_be(&self, off: &Uncertainty) -> [Self; 2] {

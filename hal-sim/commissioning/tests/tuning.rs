@@ -269,6 +269,17 @@ fn uncertainty() -> Uncertainty {
     }
 }
 
+/// With springs so many times as stiff, dampers of 0.7, and the transmission's so many times as strong.
+fn off(chain: &Chain, springs: f64, transmission_dampers: f64) -> Chain {
+    Chain {
+        stiffness: springs * chain.stiffness,
+        damping: transmission_dampers * chain.damping,
+        guide_stiffness: springs * chain.guide_stiffness,
+        guide_damping: 0.7 * chain.guide_damping,
+        ..*chain
+    }
+}
+
 /// Gains for a model whose springs may be off keep their margins where they are, those for the model as it stands do not.
 #[test]
 fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
@@ -281,13 +292,7 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
         let model = (chain, electrical);
         let tuned = tuned([&found, as_it_may_be], &model, &Limits::WITH_FRICTION);
         let off = [0.95, 0.97, 0.99, 1.01, 1.03, 1.05].map(|springs| {
-            let off = at_places(&Chain {
-                stiffness: springs * chain.stiffness,
-                damping: 0.7 * chain.damping,
-                guide_stiffness: springs * chain.guide_stiffness,
-                guide_damping: 0.7 * chain.guide_damping,
-                ..chain
-            });
+            let off = at_places(&off(&chain, springs, 0.7));
             let worst = (tuned.gains.at_worst(&off, TIMING.tick_s)).expect("a plant");
             assert!(worst.is_stable);
             worst.ms
@@ -345,11 +350,9 @@ fn gains_are_for_places_that_were_not_searched_as_well() {
         let of = |chain: &Chain| Plant::at_places(&electrical, chain, places, &TIMING);
         [
             of(&chain),
-            chain
-                .as_it_may_be(&uncertainty())
-                .iter()
-                .flat_map(of)
-                .collect(),
+            [0.95, 1.05]
+                .map(|springs| of(&off(&chain, springs, 0.5)))
+                .concat(),
         ]
     };
     let [found, may_be] = &at(&PLACES[..SEARCHED]);
@@ -369,8 +372,9 @@ fn gains_are_for_places_that_were_not_searched_as_well() {
     let (without, with) = (ms_and_rejection(&[]), ms_and_rejection(&elsewhere));
     println!("Ms, and S(30 Hz) once slowed: {without:.3?}, with all places {with:.3?}");
     assert!(without.0 > MOST_MS && with.0 < MOST_MS);
-    // 0.139, 0.82 of the slowed ones', and a tenth more. Searches whose starts keep Ms nowhere end at 0.166.
-    assert!(with.1 < 0.153 && with.1 < 0.9 * without.1);
+    assert!(with.1 < 0.71 * without.1);
+    // 0.139 and a tenth more.
+    assert!(with.1 < 0.153);
 }
 
 impl Compared {

@@ -124,15 +124,14 @@ const DEPTH: [f64; 2] = [0.02, 1.0];
 const NEXT: f64 = 0.83;
 const HALVINGS: usize = 5;
 const ABOVE: f64 = 1.2;
-/// A search, and for how many generations it is followed at most. The valleys are many, and their first generations hardly tell how deep they are.
+/// A search, and below it for how many generations it is followed at most. The valleys are many, and their first generations hardly tell how deep they are.
 const EFFORT: Effort = Effort {
     step: 0.3,
     children: 24,
     until: 1e-3,
 };
 const LAST: usize = 200;
-/// Generations from each start, and how many searches are followed from there: on plants of which all is known; on all that a machine may be, and on
-/// what was found, where it may be more.
+/// First generations on plants of which all is known; on all that a machine may be, and on what was found, where it may be more than that.
 const ON_CERTAIN: First = First {
     generations: 100,
     followed: 3,
@@ -153,6 +152,8 @@ const MAY_BE_MS: f64 = 1.97;
 const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;
 
+/// First generations: how many from each start, and how many of these searches are followed.
+#[derive(Clone, Copy)]
 struct First {
     generations: usize,
     followed: usize,
@@ -161,8 +162,8 @@ struct First {
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
 type Shape = [f64; 8];
 
-/// Gains for plants at several places and with several loads, and for those that they may be as well: searches start where what was found keeps the
-/// limits, and are ranked on a third of the frequencies of all plants; the last search, and what is found, keeps the limits on all. `resonances_hz`: of
+/// Gains for plants at several places and with several loads, and for those that they may be as well: searches are ranked on a third of the
+/// frequencies; the last search, and what is found, keeps the limits on all. `resonances_hz`: of
 /// the model in the middle of the disk ([`crate::chain::Chain::resonances_hz`]); the lowest says where notches are tried. `scheduled_inertia_kg_m2`:
 /// what the gains are for, or 0.
 ///
@@ -206,12 +207,7 @@ pub fn tune(
     let ended: Vec<_> = (firsts.into_iter())
         .flat_map(|(on, first)| {
             let start = |shape| on.start(shape).or_else(|| as_found.start(shape));
-            let mut searches: Vec<_> = (begun.iter().filter_map(start))
-                .map(|start| on.begun(&start, first.generations))
-                .collect();
-            searches.sort_by(|a, b| a.best().1.total_cmp(&b.best().1));
-            searches.truncate(first.followed);
-            searches
+            on.begun(begun.iter().filter_map(start), first)
         })
         .map(|search| last.followed(search))
         .collect();
@@ -305,11 +301,17 @@ impl Search<'_> {
         Some(unknowns(shape, &found))
     }
 
-    /// The first generations.
-    fn begun(&self, start: &DVector<f64>, generations: usize) -> Evolution {
-        let mut search = Evolution::new(start, EFFORT);
-        search.go_on(generations, |at| self.cost(at));
-        search
+    /// The best of the first generations from these points.
+    fn begun(&self, starts: impl Iterator<Item = DVector<f64>>, first: First) -> Vec<Evolution> {
+        let from = |start: DVector<f64>| {
+            let mut search = Evolution::new(&start, EFFORT);
+            search.go_on(first.generations, |at| self.cost(at));
+            search
+        };
+        let mut searches: Vec<_> = starts.map(from).collect();
+        searches.sort_by(|a, b| a.best().1.total_cmp(&b.best().1));
+        searches.truncate(first.followed);
+        searches
     }
 
     /// Where a search ends.

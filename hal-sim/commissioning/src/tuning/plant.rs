@@ -2,7 +2,7 @@
 
 use crate::chain::{Chain, Place};
 use crate::closed_loop::LoopLine;
-use crate::drive_model::Electrical;
+use crate::drive_model::{DriveModel, Electrical};
 use crate::frequency_response::hold;
 use crate::record::Timing;
 use nalgebra::{Complex, Matrix3, Vector3};
@@ -109,6 +109,22 @@ impl Plant {
             .filter_map(|[x, y]| Place::new(*x, *y))
             .map(|place| Self::from_model(electrical, chain, &place, timing))
             .collect()
+    }
+
+    /// With a load, what an identified machine may be as well, at each place: springs and dampers off, windings warm at work.
+    #[must_use]
+    pub fn as_they_may_be(
+        model: &DriveModel,
+        chain: &Chain,
+        places: &[[f64; 2]],
+        timing: &Timing,
+    ) -> Vec<Self> {
+        let [softer, stiffer] = &chain.as_it_may_be(&model.mechanical.uncertainty());
+        let as_found = &model.electrical;
+        let at_work = &as_found.each_ref().map(Electrical::at_work);
+        [(as_found, softer), (as_found, stiffer), (at_work, chain)]
+            .map(|(electrical, chain)| Self::at_places(electrical, chain, places, timing))
+            .concat()
     }
 
     /// As it was measured, at the lines alone: to see what margins a measurement gives at gains that the model was tuned for.

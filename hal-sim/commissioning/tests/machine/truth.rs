@@ -98,7 +98,6 @@ pub fn errors(parameters: &StageParameters, found: &Identified) -> [f64; 13] {
         mechanical,
     } = &found.model;
     let supply = analog.supply_gain;
-    let current = analog.current_gain.iter().sum::<f64>() / 3.0;
     let inertia = ring_inertia(plant_at(parameters, PLAN.pose));
     let found_inertia = mechanical.chain.inertia(&Place::centre());
     let worst = |error: &dyn Fn(usize) -> f64| {
@@ -133,13 +132,13 @@ pub fn errors(parameters: &StageParameters, found: &Identified) -> [f64; 13] {
         }
     });
     // Meters that read too much make everything of volts and amperes as much larger: that is no error of the method.
-    let torque = supply * current;
+    let torque = torque(parameters);
     let lost_v = 200e-9 * 40e3 * found.excited.machine.supply_v;
     [
         worst(&|i| {
             let found =
                 electrical[i].resistance_ohm / electrical[i].motor_constant * found_inertia[(i, i)];
-            found / (ohm(i) / constant * inertia[(i, i)] * supply * current / gain(i)) - 1.0
+            found / (ohm(i) / constant * inertia[(i, i)] * torque / gain(i)) - 1.0
         }),
         worst(&|i| electrical[i].motor_constant / (constant * supply) - 1.0),
         worst(&|i| electrical[i].resistance_ohm / (ohm(i) * supply / gain(i)) - 1.0),
@@ -157,6 +156,12 @@ pub fn errors(parameters: &StageParameters, found: &Identified) -> [f64; 13] {
     ]
 }
 
+/// Median, 90 % and the largest.
+pub fn spread(sizes: &mut [f64]) -> [f64; 3] {
+    sizes.sort_by(f64::total_cmp);
+    [0.5, 0.9, 1.0].map(|part| sizes[((sizes.len() - 1) as f64 * part).round() as usize])
+}
+
 /// Springs and dampers, in this order.
 pub const OFF_NAMES: [&str; 4] = [
     "transmission's stiffness",
@@ -168,8 +173,7 @@ pub const OFF_NAMES: [&str; 4] = [
 /// How far they are from what was found, over what that says that they may be. Dampers that are stronger do no harm.
 pub fn off_over_uncertainty(parameters: &StageParameters, found: &DriveModel) -> [f64; 4] {
     let (truth, _) = loop_model(parameters);
-    let analog = &parameters.analog;
-    let torque = analog.supply_gain * analog.current_gain.iter().sum::<f64>() / 3.0;
+    let torque = torque(parameters);
     let (chain, most) = (&found.mechanical.chain, found.mechanical.uncertainty());
     let off = |found: f64, truth: f64| (found / (truth * torque)).ln();
     [
@@ -178,6 +182,12 @@ pub fn off_over_uncertainty(parameters: &StageParameters, found: &DriveModel) ->
         off(chain.guide_stiffness, truth.guide_stiffness).abs() / most.guide_stiffness,
         off(chain.guide_damping, truth.guide_damping).max(0.0) / most.guide_damping,
     ]
+}
+
+/// What torques are by the meters, over what they are.
+fn torque(parameters: &StageParameters) -> f64 {
+    let analog = &parameters.analog;
+    analog.supply_gain * analog.current_gain.iter().sum::<f64>() / 3.0
 }
 
 fn plant_at(parameters: &StageParameters, pose: [f64; 3]) -> Plant {

@@ -8,7 +8,6 @@ use super::servo_gains::{self, Numbers};
 use super::steps::rest_for;
 use super::{Machine, id};
 use crate::record::RecordError;
-use commissioning::chain::Chain;
 use commissioning::drive_model::DriveModel;
 use commissioning::record::Timing;
 use commissioning::tuning::{Gains, MOST_MS, PLACES, Plant, margins};
@@ -140,13 +139,9 @@ impl Tunable {
         Ok(servo_gains::from_numbers(numbers, scheduled))
     }
 
-    /// On the model, at all places. Carriages that slide hold nothing: no spring to the ground.
+    /// On the model, at all places, with carriages that slide.
     fn is_stable(&self, gains: &Gains) -> bool {
-        let chain = Chain {
-            along_stiffness: 0.0,
-            along_damping: 0.0,
-            ..self.model.mechanical.chain
-        };
+        let chain = self.model.mechanical.chain.sliding();
         Plant::at_places(&self.model.electrical, &chain, &PLACES, &Timing::STAGE)
             .iter()
             .all(|plant| margins(plant, gains, Timing::STAGE.tick_s).is_stable)

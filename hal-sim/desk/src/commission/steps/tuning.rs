@@ -10,7 +10,7 @@ use crate::commission::measured_loop::{MeasuredLoop, plot};
 use crate::commission::servo_gains;
 use crate::record::RecordError;
 use commissioning::chain::{Chain, Place};
-use commissioning::drive_model::{DriveModel, Electrical};
+use commissioning::drive_model::DriveModel;
 use commissioning::record::Timing;
 use commissioning::tuning::{Gains, Limits, MOST_MS, PLACES, Plant, SEARCHED, Sought, tune};
 
@@ -86,13 +86,7 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(known: &Known, model: &'a DriveModel, radius_m: f64) -> Self {
-        let found = &model.mechanical.chain;
-        // Carriages that slide hold nothing: a loop has to be stable then, too, and without a spring to the ground each plant is an integrator.
-        let chain = Chain {
-            along_stiffness: 0.0,
-            along_damping: 0.0,
-            ..*found
-        };
+        let chain = model.mechanical.chain.sliding();
         let more_kg = known.also_carries_kg;
         let search = Self {
             model,
@@ -113,31 +107,20 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// With a load, as it was found, and as it may be: springs and dampers off, windings warm at work. The controller schedules its gains by the load
-    /// that it knows.
+    /// With a load, as it was found, and as it may be. The controller schedules its gains by the load that it knows.
     fn with_load(&self, chain: &Chain, places: &[[f64; 2]]) -> [Vec<Plant>; 2] {
-        let electrical = &self.model.electrical;
-        let at = |electrical, chain| Plant::at_places(electrical, chain, places, &Timing::STAGE);
-        let known = at(electrical, &self.chain);
-        let scheduled = |plants: Vec<Plant>| {
-            (plants.into_iter().zip(&known))
-                .map(|(plant, known)| plant.scheduled_by(known))
-                .collect::<Vec<_>>()
-        };
-        let off = self.model.mechanical.uncertainty();
-        let [softer, stiffer] = &chain.as_it_may_be(&off);
-        let at_work = (electrical.each_ref()).map(Electrical::at_work);
-        let may_be = [
-            (electrical, softer),
-            (electrical, stiffer),
-            (&at_work, chain),
-        ];
+        let (model, timing) = (self.model, &Timing::STAGE);
+        let at = |chain| Plant::at_places(&model.electrical, chain, places, timing);
+        let known = at(&self.chain);
         [
-            scheduled(at(electrical, chain)),
-            may_be
-                .map(|(electrical, chain)| scheduled(at(electrical, chain)))
-                .concat(),
+            at(chain),
+            Plant::as_they_may_be(model, chain, places, timing),
         ]
+        .map(|plants| {
+            (plants.into_iter().zip(known.iter().cycle()))
+                .map(|(plant, known)| plant.scheduled_by(known))
+                .collect()
+        })
     }
 
     /// With what is on it, and with what it carries at times besides: as it was found, and as it may be.
