@@ -34,12 +34,11 @@ fn sought(
         electrical,
         &chain.resonances_hz(&centre),
         chain.inertia(&centre)[(0, 0)],
-        &TIMING,
         limits,
     );
     let all = [found, may_be, elsewhere].concat();
     let gains = tuned.expect("there are gains").gains;
-    let sound = gains.slowed_until_sound(&all, MOST_MS, TIMING.tick_s);
+    let sound = gains.slowed_until_sound(&all, MOST_MS);
     sound.expect("small gains are sound")
 }
 
@@ -75,7 +74,7 @@ fn row(seed: u64) -> [f64; 4] {
     );
     let certain = |places: &[[f64; 2]]| [truth(places), Vec::new()];
     let (_, best) = sought((&chain, &electrical), certain, &Limits::ON_MODEL);
-    let there = (gains.at_worst(&truth(&PLACES), TIMING.tick_s)).expect("a plant");
+    let there = (gains.at_worst(&truth(&PLACES))).expect("a plant");
     [
         told.rejection,
         there.rejection,

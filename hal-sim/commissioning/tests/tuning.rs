@@ -123,7 +123,7 @@ fn compare(stage: &StageParameters, parameters: &Parameters, x_m: f64, print: &s
         let place = Place::new(point.place[0], point.place[1]).expect("inside");
         let plant = Plant::from_model(&electrical, &chain, &place, &TIMING);
         // The grid is fine enough for a line between its points.
-        let all = sensitivity(&plant, &gains, TIMING.tick_s);
+        let all = sensitivity(&plant, &gains);
         let k = plant.hz.partition_point(|&hz| hz < point.hz);
         let part = (point.hz - plant.hz[k - 1]) / (plant.hz[k] - plant.hz[k - 1]);
         let predicted = all[k - 1][(0, 0)] * (1.0 - part) + all[k][(0, 0)] * part;
@@ -149,7 +149,6 @@ fn compare(stage: &StageParameters, parameters: &Parameters, x_m: f64, print: &s
     let predicted = margins(
         &Plant::from_model(&electrical, &chain, &place, &TIMING),
         &gains,
-        TIMING.tick_s,
     );
     let found = Compared {
         worst: off[off.len() - 1],
@@ -223,7 +222,7 @@ fn sought_for(
 ) -> Tuned {
     let centre = Place::centre();
     let (resonances_hz, inertia) = (chain.resonances_hz(&centre), chain.inertia(&centre)[(0, 0)]);
-    tune(sought, electrical, &resonances_hz, inertia, &TIMING, limits).expect("there are gains")
+    tune(sought, electrical, &resonances_hz, inertia, limits).expect("there are gains")
 }
 
 #[test]
@@ -293,7 +292,7 @@ fn gains_for_an_uncertain_model_bear_springs_that_are_off() {
         let tuned = tuned([&found, as_it_may_be], &model, &Limits::WITH_FRICTION);
         let off = [0.95, 0.97, 0.99, 1.01, 1.03, 1.05].map(|springs| {
             let off = at_places(&off(&chain, springs, 0.7));
-            let worst = (tuned.gains.at_worst(&off, TIMING.tick_s)).expect("a plant");
+            let worst = (tuned.gains.at_worst(&off)).expect("a plant");
             assert!(worst.is_stable);
             worst.ms
         });
@@ -319,9 +318,7 @@ fn gains_bear_windings_that_are_warm_at_work() {
             &(chain, electrical),
             &Limits::WITH_FRICTION,
         );
-        (tuned.gains.at_worst(&warm, TIMING.tick_s))
-            .expect("a plant")
-            .ms
+        (tuned.gains.at_worst(&warm)).expect("a plant").ms
     };
     let (without, with) = (ms_at_work(&[]), ms_at_work(&warm));
     println!("Ms with windings that are warm at work {without:.2}, with gains for them {with:.2}");
@@ -365,8 +362,8 @@ fn gains_are_for_places_that_were_not_searched_as_well() {
             elsewhere,
         };
         let gains = sought_for(sought, &(chain, electrical), &Limits::WITH_FRICTION).gains;
-        let margins = gains.at_worst(&all, TIMING.tick_s).expect("a plant");
-        let slowed = gains.slowed_until_sound(&all, MOST_MS, TIMING.tick_s);
+        let margins = gains.at_worst(&all).expect("a plant");
+        let slowed = gains.slowed_until_sound(&all, MOST_MS);
         (margins.ms, slowed.expect("gains").1.rejection)
     };
     let (without, with) = (ms_and_rejection(&[]), ms_and_rejection(&elsewhere));
@@ -418,12 +415,7 @@ fn stability_is_that_of_the_characteristic_polynomial() {
                     * ((z + 1.0) * (0.5 * t * t) / ((z - 1.0) * (z - 1.0)))
             })
             .collect();
-        let plant = Plant {
-            hz,
-            response,
-            inertia: [1.0; 3],
-            is_complete: true,
-        };
+        let mut plant = Plant::new(hz, response, [1.0; 3], true, t);
         let pivot = PivotGains {
             gains: parameters::Gains {
                 velocity_v_s_rad: gain,
@@ -432,14 +424,11 @@ fn stability_is_that_of_the_characteristic_polynomial() {
             },
             filters: parameters::FeedbackFilters::NONE,
         };
-        let found = margins(
-            &plant,
-            &Gains {
-                pivots: [pivot; 3],
-                scheduled_inertia_kg_m2: 0.0,
-            },
-            t,
-        );
+        let gains = Gains {
+            pivots: [pivot; 3],
+            scheduled_inertia_kg_m2: 0.0,
+        };
+        let found = margins(&plant, &gains);
         let (g, b) = (
             0.5 * gain * t * (1.0 + corner * t),
             1.0 / (1.0 + corner * t),
@@ -451,6 +440,9 @@ fn stability_is_that_of_the_characteristic_polynomial() {
             && a0.abs() < 1.0
             && (a0 * a0 - 1.0).abs() > (a0 * a2 - a1).abs();
         assert_eq!(found.is_stable, is_stable, "{gain} {corner}: {found:?}");
+        // A loop of which a frequency is not known is none that is stable.
+        plant.response[100][(0, 0)] = Complex::from(f64::NAN);
+        assert!(!margins(&plant, &gains).is_stable, "{gain} {corner}");
     }
 }
 

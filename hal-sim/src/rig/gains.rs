@@ -84,12 +84,11 @@ pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Par
         electrical,
         &chain.resonances_hz(&centre),
         chain.inertia(&centre)[(0, 0)],
-        &Timing::STAGE,
         &Limits::ON_MODEL,
     );
     let sound = (tuned.ok()).and_then(|tuned| {
         let plants = plants(&model, &PLACES);
-        (tuned.gains).slowed_until_sound(&plants, MOST_MS, Timing::STAGE.tick_s)
+        (tuned.gains).slowed_until_sound(&plants, MOST_MS)
     });
     match sound {
         Some((gains, _)) => with_gains(parameters, &gains),
@@ -192,7 +191,7 @@ pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Pa
     }
     let plants = plants(&loop_model(stage), &PLACES);
     // As they are where no slower ones do.
-    let sound = Gains::of(&told).slowed_until_sound(&plants, MOST_FITTED_MS, Timing::STAGE.tick_s);
+    let sound = Gains::of(&told).slowed_until_sound(&plants, MOST_FITTED_MS);
     sound.map_or(told.clone(), |(gains, _)| gains.applied_to(&told))
 }
 
@@ -252,7 +251,7 @@ mod tests {
         let plants = plants(&loop_model(&stage), &PLACES);
         let [found, kept] =
             [with_gains_tuned(&told, &stage), with_reference_gains(&told)].map(|told| {
-                let worst = Gains::of(&told).at_worst(&plants, Timing::STAGE.tick_s);
+                let worst = Gains::of(&told).at_worst(&plants);
                 (told, worst.expect("a plant"))
             });
         println!("found {:?}\nkept {:?}", found.1, kept.1);

@@ -147,7 +147,7 @@ fn ms_with_more(stage: &StageParameters, more_kg: f64, parameters: &Parameters) 
         let plants: Vec<_> = (at(&heavier).into_iter().zip(&at(&chain)))
             .map(|(heavier, known)| heavier.scheduled_by(known))
             .collect();
-        let worst = Gains::of(parameters).at_worst(&plants, Timing::STAGE.tick_s);
+        let worst = Gains::of(parameters).at_worst(&plants);
         worst.expect("a plant").ms
     })
 }

@@ -8,7 +8,7 @@ use super::plant::Plant;
 use super::servo::{At, PivotGains, Servo};
 use firmware::parameters::Parameters;
 use nalgebra::{Complex, Matrix3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Gains of the three pivots.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,39 +71,31 @@ impl Gains {
 
     /// The worst margins on all plants; `None` where there is no plant.
     #[must_use]
-    pub fn at_worst(&self, plants: &[Plant], tick_s: f64) -> Option<Margins> {
-        self.at_worst_with(plants, tick_s, &Enough::NOTHING)
+    pub fn at_worst(&self, plants: &[Plant]) -> Option<Margins> {
+        self.on_each(plants.iter().map(|plant| (plant, Enough::NOTHING)))
+            .reduce(Margins::worse)
     }
 
-    /// The same, exact only beyond what is enough.
-    pub(super) fn at_worst_with(
+    /// Margins on each plant, exact only beyond what is enough there.
+    pub(super) fn on_each<'a>(
         &self,
-        plants: &[Plant],
-        tick_s: f64,
-        enough: &Enough,
-    ) -> Option<Margins> {
+        plants: impl Iterator<Item = (&'a Plant, Enough)>,
+    ) -> impl Iterator<Item = Margins> {
         let mut servos: Option<Servos<'_>> = None;
-        let all = plants.iter().map(|plant| {
+        plants.map(move |(plant, enough)| {
             // Plants of a model have the same frequencies.
-            let same = servos.take().filter(|servos| servos.hz == plant.hz);
-            let servos =
-                servos.insert(same.unwrap_or_else(|| Servos::new(&plant.hz, self, tick_s)));
-            servos.margins(plant, enough)
-        });
-        all.reduce(Margins::worse)
+            let same = servos.take().filter(|servos| servos.are_for(plant));
+            let servos = servos.insert(same.unwrap_or_else(|| Servos::new(plant, self)));
+            servos.margins(plant, &enough)
+        })
     }
 
     /// The fastest of slower and slower gains that is stable and keeps Ms on all plants, and the worst margins; `None` where none does.
     #[must_use]
-    pub fn slowed_until_sound(
-        &self,
-        plants: &[Plant],
-        most_ms: f64,
-        tick_s: f64,
-    ) -> Option<(Self, Margins)> {
+    pub fn slowed_until_sound(&self, plants: &[Plant], most_ms: f64) -> Option<(Self, Margins)> {
         let mut gains = *self;
         for _ in 0..MOST_LESS {
-            let all = gains.at_worst(plants, tick_s)?;
+            let all = gains.at_worst(plants)?;
             if all.are_sound(most_ms) {
                 return Some((gains, all));
             }
@@ -152,9 +144,9 @@ pub const BEYOND: f64 = 1.5;
 /// What becomes of a voltage that is added to the servos', at each frequency: `1 / (1 + C P)`, what [`crate::closed_loop`] measures. With servos
 /// that are not the same it is not that of an angle, `1 / (1 + P C)`, which margins are of.
 #[must_use]
-pub fn sensitivity(plant: &Plant, gains: &Gains, tick_s: f64) -> Vec<Matrix3<Complex<f64>>> {
+pub fn sensitivity(plant: &Plant, gains: &Gains) -> Vec<Matrix3<Complex<f64>>> {
     let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
-    let servos = Servos::new(&plant.hz, gains, tick_s);
+    let servos = Servos::new(plant, gains);
     (plant.response.iter().zip(servos.at(plant)))
         .map(|(response, servos)| {
             let l = Matrix3::from_diagonal(&servos.into()) * response;
@@ -177,29 +169,26 @@ impl Enough {
     };
 }
 
-/// The servos of the three pivots, with the gains as they are told, at these frequencies.
+/// The servos of the three pivots, with the gains as they are told, at a plant's frequencies.
 struct Servos<'a> {
-    hz: &'a [f64],
+    at: &'a [At],
     responses: Vec<[Complex<f64>; 3]>,
-    /// `(1 - 1/z)^6`.
-    integrators: Vec<Complex<f64>>,
     scheduled_inertia_kg_m2: f64,
 }
 
 impl<'a> Servos<'a> {
-    fn new(hz: &'a [f64], gains: &Gains, tick_s: f64) -> Self {
-        let servos = (gains.pivots.each_ref()).map(|pivot| Servo::new(pivot, tick_s));
-        let response = |&hz: &f64| {
-            let at = At::new(hz, tick_s);
-            servos.each_ref().map(|servo| servo.response(&at))
-        };
-        let integrators = |hz: &f64| (1.0 - Complex::cis(-TAU * hz * tick_s)).powi(6);
+    fn new(plant: &'a Plant, gains: &Gains) -> Self {
+        let servos = (gains.pivots.each_ref()).map(|pivot| Servo::new(pivot, plant.tick_s));
+        let response = |at: &At| servos.each_ref().map(|servo| servo.response(at));
         Self {
-            hz,
-            responses: hz.iter().map(response).collect(),
-            integrators: hz.iter().map(integrators).collect(),
+            at: &plant.at,
+            responses: plant.at.iter().map(response).collect(),
             scheduled_inertia_kg_m2: gains.scheduled_inertia_kg_m2,
         }
+    }
+
+    fn are_for(&self, plant: &Plant) -> bool {
+        self.at == plant.at
     }
 
     /// With gains as they are scheduled for what the pivots move there.
@@ -232,19 +221,21 @@ impl<'a> Servos<'a> {
             resonance_peak: enough.resonance_peak,
         };
         let loops = self.loops(plant);
-        let (mut last, mut turned) = (Complex::from(1.0), 0.0);
+        let (mut last, mut rounds, mut is_known) = (Complex::from(1.0), 0, true);
         let mut crossovers = [0.0; 3];
-        for ((&hz, l), integrators) in plant.hz.iter().zip(&loops).zip(&self.integrators) {
+        for ((&hz, l), at) in plant.hz.iter().zip(&loops).zip(&plant.at) {
             let difference = Matrix3::identity() + l;
             let (determinant, adjugate) = determinant_and_adjugate(&difference);
-            let now = determinant * integrators;
-            turned += (now / last).arg();
+            let now = determinant * at.without_integrators;
+            rounds += crossing(last, now);
+            is_known &= now.is_finite();
             last = now;
             let is_first_there =
                 plant.is_complete && found.rejection.is_nan() && hz >= REJECTION_HZ;
             // The two larger singular values of three have a product of at most a quarter of all their squares' sum squared.
-            let at_most = 0.5 * difference.norm_squared() / determinant.norm();
-            if is_first_there || !(at_most <= found.ms) {
+            let sum = difference.norm_squared();
+            let is_enough = sum * sum <= 4.0 * found.ms.powi(2) * determinant.norm_sqr();
+            if is_first_there || !is_enough {
                 let size = 1.0 / least_singular(&difference);
                 if !(size <= found.ms) {
                     (found.ms, found.ms_hz) = (size, hz);
@@ -260,7 +251,7 @@ impl<'a> Servos<'a> {
             }
         }
         found.crossover_hz = crossovers.into_iter().fold(f64::INFINITY, f64::min);
-        found.is_stable = !plant.is_complete || turned.abs() < PI;
+        found.is_stable = !plant.is_complete || (is_known && rounds == 0);
         let beyond = (plant.hz.iter()).position(|hz| *hz > BEYOND * found.crossover_hz);
         let first = beyond.unwrap_or(loops.len()).max(1);
         let sizes: Vec<f64> = (loops.iter().skip(first - 1))
@@ -283,8 +274,8 @@ impl<'a> Servos<'a> {
 
 /// The margins of a loop at one place.
 #[must_use]
-pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
-    Servos::new(&plant.hz, gains, tick_s).margins(plant, &Enough::NOTHING)
+pub fn margins(plant: &Plant, gains: &Gains) -> Margins {
+    Servos::new(plant, gains).margins(plant, &Enough::NOTHING)
 }
 
 impl Margins {
@@ -317,6 +308,17 @@ impl Margins {
 #[must_use]
 pub fn worst_direction(m: &Matrix3<Complex<f64>>) -> f64 {
     largest_singular(m)
+}
+
+/// Whether the way from one number to the next, the shorter one about 0, goes over the negative real axis: 1 counterclockwise, -1 clockwise, else 0.
+/// Their sum says how often a curve that begins at 1 goes round 0.
+fn crossing(from: Complex<f64>, to: Complex<f64>) -> i32 {
+    let turns_left = from.re * to.im > from.im * to.re;
+    match (from.im < 0.0, to.im < 0.0) {
+        (false, true) if turns_left => 1,
+        (true, false) if !turns_left => -1,
+        _ => 0,
+    }
 }
 
 /// Determinant, and the diagonal of the adjugate: their quotients are the diagonal of the inverse.

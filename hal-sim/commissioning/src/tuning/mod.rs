@@ -24,7 +24,6 @@ pub use plant::{PLACES, Plant, SEARCHED, angle_by_volts, grid};
 pub use servo::PivotGains;
 
 use crate::drive_model::Electrical;
-use crate::record::Timing;
 use evolution::{Effort, Evolution};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
 use margins::Enough;
@@ -159,6 +158,9 @@ struct First {
     followed: usize,
 }
 
+/// The worst margins, exact where they are beyond the limits, and the largest Ms over its limit.
+type Worst = (Margins, f64);
+
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
 type Shape = [f64; 8];
 
@@ -174,7 +176,6 @@ pub fn tune(
     electrical: &[Electrical; 3],
     resonances_hz: &[f64],
     scheduled_inertia_kg_m2: f64,
-    timing: &Timing,
     limits: &Limits,
 ) -> Result<Tuned, TuningError> {
     if sought.found.is_empty() {
@@ -188,7 +189,6 @@ pub fn tune(
         electrical,
         scheduled_inertia_kg_m2,
         notch_hz: [NOTCH_FROM * lowest_hz, NOTCH_TO_HZ],
-        tick_s: timing.tick_s,
         limits,
     };
     let thinned = |plants: &[Plant]| plants.iter().map(Plant::thinned).collect::<Vec<_>>();
@@ -212,7 +212,8 @@ pub fn tune(
         .map(|search| last.followed(search))
         .collect();
     let (_, mut tuned) = last.best(&ended).ok_or(TuningError::NotEvenSmall)?;
-    if !whole.margins(&tuned.gains).0.are_sound(MOST_MS) {
+    let is_sound = |(margins, _): &Worst| margins.are_sound(MOST_MS);
+    if whole.worst(&tuned.gains, is_sound).is_none() {
         // A load that is off the centre swings otherwise at every place: slower gains of this shape may be far from the best that keep Ms there. From
         // gains that do not keep it, a search may end at some that hardly move the stage.
         let everywhere = whole.best(&ended).and_then(|(at, slower)| {
@@ -225,7 +226,7 @@ pub fn tune(
     let mut gains = tuned.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
     let margins = ([sought.found, sought.may_be].into_iter())
-        .filter_map(|plants| gains.at_worst(plants, timing.tick_s))
+        .filter_map(|plants| gains.at_worst(plants))
         .reduce(Margins::worse)
         .ok_or(TuningError::NoPlant)?;
     Ok(Tuned { gains, margins })
@@ -290,7 +291,6 @@ struct Search<'a> {
     electrical: &'a [Electrical; 3],
     scheduled_inertia_kg_m2: f64,
     notch_hz: [f64; 2],
-    tick_s: f64,
     limits: &'a Limits,
 }
 
@@ -369,30 +369,36 @@ impl Search<'_> {
         }
     }
 
-    /// The worst of all, exact where it is beyond the limits, and the largest Ms over its limit.
-    fn margins(&self, gains: &Gains) -> (Margins, f64) {
-        let Limits {
-            ms, resonance_peak, ..
-        } = *self.limits;
-        let of =
-            |plants, ms| gains.at_worst_with(plants, self.tick_s, &Enough { ms, resonance_peak });
-        let found = of(self.found, ms).unwrap_or_else(|| unreachable!("there is a plant"));
-        let share = found.ms / ms;
-        of(self.may_be, MAY_BE_MS).map_or((found, share), |may_be| {
-            (found.worse(may_be), share.max(may_be.ms / MAY_BE_MS))
-        })
+    /// The worst of all plants; `None` at the first that does not do.
+    fn worst(&self, gains: &Gains, does: impl Fn(&Worst) -> bool) -> Option<Worst> {
+        let resonance_peak = self.limits.resonance_peak;
+        let with = |ms: f64| move |plant| (plant, Enough { ms, resonance_peak });
+        // What a machine may be passes the limits first.
+        let may_be = self.may_be.iter().map(with(MAY_BE_MS));
+        let found = self.found.iter().map(with(self.limits.ms));
+        let all = may_be.chain(found);
+        let mut worst: Option<Worst> = None;
+        for (margins, (_, Enough { ms, .. })) in gains.on_each(all.clone()).zip(all) {
+            let this = (margins, margins.ms / ms);
+            if !does(&this) {
+                return None;
+            }
+            worst = Some(worst.map_or(this, |(margins, ms_over)| {
+                (margins.worse(this.0), ms_over.max(this.1))
+            }));
+        }
+        worst
     }
 
-    fn keeps(&self, (margins, ms_over): &(Margins, f64)) -> bool {
+    fn is_kept(&self, (margins, ms_over): &Worst) -> bool {
         margins.is_stable && *ms_over <= 1.0 && margins.resonance_peak <= self.limits.resonance_peak
     }
 
     fn cost(&self, unknowns: &DVector<f64>) -> f64 {
         let gains = self.gains(&shape_of(unknowns), velocity_of(unknowns));
-        let (margins, ms_over) = self.margins(&gains);
-        if !margins.is_stable {
+        let Some((margins, ms_over)) = self.worst(&gains, |(margins, _)| margins.is_stable) else {
             return UNSTABLE;
-        }
+        };
         self.loss(&Tuned { gains, margins })
             + self.outside(&shape_of(unknowns))
             + PENALTY
@@ -424,11 +430,8 @@ impl Search<'_> {
     fn best_velocity(&self, shape: &Shape, falling: impl Iterator<Item = f64>) -> Option<Tuned> {
         let tuned = |velocity: f64| {
             let gains = self.gains(shape, velocity);
-            let margins = self.margins(&gains);
-            self.keeps(&margins).then_some(Tuned {
-                gains,
-                margins: margins.0,
-            })
+            let (margins, _) = self.worst(&gains, |worst| self.is_kept(worst))?;
+            Some(Tuned { gains, margins })
         };
         let mut high = None;
         for velocity in falling {

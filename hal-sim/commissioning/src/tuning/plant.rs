@@ -5,6 +5,7 @@ use crate::closed_loop::LoopLine;
 use crate::drive_model::{DriveModel, Electrical};
 use crate::frequency_response::hold;
 use crate::record::Timing;
+use crate::tuning::servo::At;
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::TAU;
 
@@ -19,6 +20,9 @@ pub struct Plant {
     pub inertia: [f64; 3],
     /// Whether the frequencies reach from half a hertz to nearly half the ticks' rate: else neither stability nor rejection is known.
     pub is_complete: bool,
+    pub(super) tick_s: f64,
+    /// The frequencies, for a servo with this tick.
+    pub(super) at: Vec<At>,
 }
 
 /// Places that gains have to be good at, track radii: in the middle, and a ring's width from the rim, once towards each guide.
@@ -76,6 +80,25 @@ pub fn angle_by_volts(
 }
 
 impl Plant {
+    /// From responses, rad/V, at these frequencies; whether they are complete. Ticks as long as these have been told to the responses' delays.
+    #[must_use]
+    pub fn new(
+        hz: Vec<f64>,
+        response: Vec<Matrix3<Complex<f64>>>,
+        inertia: [f64; 3],
+        is_complete: bool,
+        tick_s: f64,
+    ) -> Self {
+        Self {
+            at: hz.iter().map(|&hz| At::new(hz, tick_s)).collect(),
+            hz,
+            response,
+            inertia,
+            is_complete,
+            tick_s,
+        }
+    }
+
     /// From the model, at a place.
     #[must_use]
     pub fn from_model(
@@ -89,12 +112,8 @@ impl Plant {
             .iter()
             .map(|&hz| angle_by_volts(electrical, chain, place, hz) * seen(hz, timing))
             .collect();
-        Self {
-            hz,
-            response,
-            inertia: diagonal_of(&chain.inertia(place)),
-            is_complete: true,
-        }
+        let inertia = diagonal_of(&chain.inertia(place));
+        Self::new(hz, response, inertia, true, timing.tick_s)
     }
 
     /// The same at several places; those outside the track are left out.
@@ -130,15 +149,12 @@ impl Plant {
     /// As it was measured, at the lines alone: to see what margins a measurement gives at gains that the model was tuned for.
     #[must_use]
     pub fn from_lines(lines: &[LoopLine], inertia: [f64; 3], timing: &Timing) -> Self {
-        Self {
-            hz: lines.iter().map(|line| line.hz).collect(),
-            response: lines
-                .iter()
-                .map(|line| line.plant * seen(line.hz, timing))
-                .collect(),
-            inertia,
-            is_complete: false,
-        }
+        let hz = lines.iter().map(|line| line.hz).collect();
+        let response = lines
+            .iter()
+            .map(|line| line.plant * seen(line.hz, timing))
+            .collect();
+        Self::new(hz, response, inertia, false, timing.tick_s)
     }
 }
 
@@ -158,6 +174,7 @@ impl Plant {
         Self {
             hz: self.hz.iter().copied().step_by(every).collect(),
             response: self.response.iter().copied().step_by(every).collect(),
+            at: self.at.iter().copied().step_by(every).collect(),
             ..*self
         }
     }

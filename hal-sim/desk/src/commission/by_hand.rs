@@ -144,7 +144,7 @@ impl Tunable {
         let chain = self.model.mechanical.chain.sliding();
         Plant::at_places(&self.model.electrical, &chain, &PLACES, &Timing::STAGE)
             .iter()
-            .all(|plant| margins(plant, gains, Timing::STAGE.tick_s).is_stable)
+            .all(|plant| margins(plant, gains).is_stable)
     }
 }
 

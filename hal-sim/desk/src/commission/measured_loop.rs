@@ -125,7 +125,7 @@ impl MeasuredLoop {
 
     /// The same plant with other gains.
     pub fn with(&self, gains: &Gains, chain: &Chain, radius_m: f64) -> Option<Self> {
-        let said = sensitivity(&self.plant(chain, radius_m)?, gains, Timing::STAGE.tick_s);
+        let said = sensitivity(&self.plant(chain, radius_m)?, gains);
         let lines = (self.lines.iter().zip(said))
             .map(|(line, sensitivity)| LoopLine {
                 sensitivity,

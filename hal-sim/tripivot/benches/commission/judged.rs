@@ -305,7 +305,7 @@ fn plants(machine: &StageParameters, warmer_k: [f64; 3]) -> Vec<Plant> {
 pub fn gains(machine: &StageParameters, parameters: &Parameters, warmth: &Warmth) -> Figures {
     let at_worst = |parameters: &Parameters, warmer_k: [f64; 3]| {
         let plants = plants(machine, warmer_k);
-        let worst = Gains::of(parameters).at_worst(&plants, Timing::STAGE.tick_s);
+        let worst = Gains::of(parameters).at_worst(&plants);
         worst.expect("a plant")
     };
     let tuned_k = warmth.tuned.get();

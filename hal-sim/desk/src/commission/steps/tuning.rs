@@ -138,7 +138,7 @@ impl<'a> Search<'a> {
     fn tell_heavier(&self, found: &mut Found, gains: &Gains) {
         let heavier = (self.heavier.iter()).flat_map(|chain| self.with_load(chain, &PLACES));
         let heavier: Vec<_> = heavier.flatten().collect();
-        if let Some(worst) = gains.at_worst(&heavier, Timing::STAGE.tick_s) {
+        if let Some(worst) = gains.at_worst(&heavier) {
             found.push(Finding::new(
                 "Ms with what it also carries, as predicted",
                 format!("{:.2}; S(30 Hz) {:.3}", worst.ms, worst.rejection),
@@ -170,15 +170,13 @@ impl<'a> Search<'a> {
             &self.model.electrical,
             &self.chain.resonances_hz(&centre),
             self.chain.inertia(&centre)[(0, 0)],
-            &Timing::STAGE,
             &Limits::WITH_FRICTION,
         );
         self.sound(&tuned.ok()?.gains)
     }
 
     fn sound(&self, gains: &Gains) -> Option<(Gains, f64)> {
-        let (gains, worst) =
-            gains.slowed_until_sound(&self.all(), MOST_MS, Timing::STAGE.tick_s)?;
+        let (gains, worst) = gains.slowed_until_sound(&self.all(), MOST_MS)?;
         Some((gains, worst.rejection))
     }
 
