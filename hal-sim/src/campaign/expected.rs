@@ -284,13 +284,15 @@ impl Injection {
                 NEARLY_STALLED,
             ],
             Self::EmergencyStop => &[EMERGENCY_STOP],
-            // At full speed the pivots lead by what was missed, which may be too far.
+            // At full speed the pivots lead by what was missed, which may be too far. A loop that misses ticks has less phase, and may ring.
             Self::LateLoop => {
                 &const {
                     [
                         cause(Effect::LateTicks, Kind::LoopLate, 0),
                         FOLLOWING,
                         NEARLY_FOLLOWING,
+                        OSCILLATES,
+                        NEARLY_OSCILLATES,
                     ]
                 }
             }
