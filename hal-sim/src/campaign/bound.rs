@@ -9,11 +9,12 @@
 use firmware::fault::{Fault, Reaction};
 use firmware::parameters::Parameters;
 
+use super::effect::{RESISTOR_OFF_V, RESISTOR_ON_V};
 use super::rest::{Rests, ToRest};
 use super::scenario::Scenario;
 use super::truth::Path;
 use crate::front::Wiring;
-use crate::machine::devices::{BridgeState, Stage};
+use crate::machine::devices::{BridgeState, Bus, Stage};
 use crate::machine::plant::{AXES, Plant};
 
 /// A run may be worse than its bound by this, for what the bound leaves out.
@@ -77,6 +78,7 @@ impl Moment {
         };
         let pins = self.wiring.map(|wiring| wiring.pass(told));
         let mut rests = Rests::default();
+        let mut is_on = self.stage.brake_resistor_is_on();
         scenario.injection.let_go(&mut self.stage.plant);
         for tick in self.tick..self.tick + AFTERMATH {
             let plant = &mut self.stage.plant;
@@ -88,6 +90,10 @@ impl Moment {
             if rests.to_rest().rests && tick > self.tick + 20 {
                 break;
             }
+            // Bridges that have tripped brake by their diodes, onto a bus that the resistor holds down: no further than the controller has it.
+            let volts = self.stage.bus().map_or(0.0, Bus::volts);
+            is_on = volts > if is_on { RESISTOR_OFF_V } else { RESISTOR_ON_V };
+            self.stage.set_brake_resistor(is_on);
             self.stage.advance_period(pins);
         }
         rests.to_rest()

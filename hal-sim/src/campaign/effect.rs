@@ -50,7 +50,7 @@ const FULL: f64 = 0.98;
 const TOO_HIGH_V: f64 = 58.0;
 const NEAR_V: f64 = 0.15;
 /// Supply over which the brake resistor is on for certain, V; what it has, bears for long and bears besides.
-const RESISTOR_ON_V: f64 = 54.05;
+pub(super) const RESISTOR_ON_V: f64 = 54.05;
 const RESISTOR_OHM: f64 = 8.2;
 const RESISTOR_W: f64 = 50.0;
 const RESISTOR_J: f64 = 500.0;
@@ -59,7 +59,8 @@ const RESISTOR_J: f64 = 500.0;
 const SETTLED_TICKS: u64 = 20;
 const RISE_V: [f64; 2] = [0.95, 0.55];
 const RISE_TICKS: u64 = 6;
-const RESISTOR_OFF_V: f64 = 52.0;
+/// Supply under which it is switched off again, V.
+pub(super) const RESISTOR_OFF_V: f64 = 52.0;
 /// Ticks of a servo that is on, bridges waking up, in which the resistor has been tested three times; and of one test.
 const TESTED_TICKS: u64 = 123;
 const TEST_TICKS: u64 = 41;

@@ -306,6 +306,12 @@ impl Stage {
         self.brake_resistor_is_on = is_on;
     }
 
+    /// Whether that pin is on.
+    #[must_use]
+    pub const fn brake_resistor_is_on(&self) -> bool {
+        self.brake_resistor_is_on
+    }
+
     /// Breaks the brake resistor or its switch, or mends it.
     pub fn set_brake_resistor_fault(&mut self, fault: Option<BrakeResistorFault>) {
         self.brake_resistor_fault = fault;
