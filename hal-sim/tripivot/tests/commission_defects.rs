@@ -3,6 +3,7 @@
 use desk::commission::{Chosen, Done, ZerosBy, run};
 use hal_sim::front::{Host, Wiring};
 use hal_sim::machine::devices::{EncoderFault, SettingsFlash};
+use hal_sim::machine::plant::External;
 use hal_sim::machine::unknown;
 use std::cell::Cell;
 use std::rc::Rc;
@@ -120,4 +121,29 @@ fn an_encoder_whose_coupling_slips_is_refused_when_it_is_turned_by_hand() {
         host.stage.encoders[2].set_offset(-0.6 * turned);
     });
     is_refused(&all, "hand", &format!("encoder at port {port} has turned"));
+}
+
+#[test]
+fn a_jig_that_has_been_forgotten_is_refused_before_a_servo_works_against_it() {
+    let mut before = None;
+    let mut jig = None;
+    let all = commissioned(move |host| {
+        let plant = &mut host.stage.plant;
+        let pose = plant.pose();
+        // No motor and no hand moves it by a millimetre within a tick.
+        let [x_m, y_m, _] = before.replace(pose).unwrap_or(pose);
+        if (pose[0] - x_m).hypot(pose[1] - y_m) > 1e-3 {
+            jig = Some(pose);
+        }
+        if let Some(jig) = jig {
+            let velocity = plant.velocity();
+            let pull = |k: usize| 2e7 * (jig[k] - pose[k]) - 8e3 * velocity[k];
+            plant.set_external(External {
+                force_n: [pull(0), pull(1)],
+                torque_n_m: 5e4 * (jig[2] - pose[2]) - 30.0 * velocity[2],
+                ..External::default()
+            });
+        }
+    });
+    is_refused(&all, "zeros", "the jig is in");
 }

@@ -26,6 +26,22 @@ fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
     assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
 }
 
+/// A kind machine has next to no friction: it creeps for a while once its motors are off, and goes where their cogging pulls it where no jig holds it.
+#[test]
+fn a_kind_machine_comes_to_rest_before_it_is_looked_at_and_its_jig_holds_it() {
+    let options = RunOptions::default();
+    let stage = stage_parameters(&options);
+    for step in ["wiring", "zeros"] {
+        let mut machine = SimulatedMachine::told(&stage, SettingsFlash::in_memory(), Told::Machine);
+        let chosen = Chosen::only(step).expect("a step");
+        let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
+        for finding in &ran.done[0].found.findings {
+            println!("{step}: {}: {}", finding.name, finding.value);
+        }
+        assert_eq!(ran.done[0].failure, None, "{step}");
+    }
+}
+
 /// The settling window, encoder counts, that verification leaves a machine whose servos have this integral gain; as told, where it is none.
 fn window_left(integral: Option<f64>) -> Result<f64, String> {
     let stage = StageParameters::REFERENCE;

@@ -8,6 +8,7 @@ import { TaskPicture } from "./task-picture.js";
 const WAITS = {
   turn: "The encoders tell when it is done; nothing has to be pressed.",
   jig: "Say so when it stands: nothing moves before.",
+  out: "Nothing has to be pressed; hands off the rings.",
 };
 const SIMULATED = "The simulated machine’s simulated person does it.";
 

@@ -87,9 +87,17 @@ pub enum Task {
     Turn,
     /// Says when it is done.
     PutOnJig,
+    /// Takes it out again; a ring that moves freely tells when it is done.
+    TakeOutJig,
 }
 
 impl Task {
+    /// Whether the person has to say that it is done: nothing goes on before.
+    #[must_use]
+    pub const fn is_said_to_be_done(self) -> bool {
+        matches!(self, Self::PutOnJig)
+    }
+
     /// In words.
     #[must_use]
     pub const fn words(self) -> &'static str {
@@ -100,6 +108,9 @@ impl Task {
             }
             Self::PutOnJig => {
                 "Bring the platform into the middle and put in the jig: guide 1 points along x, away from the middle, over pivot 1."
+            }
+            Self::TakeOutJig => {
+                "Take the jig out again. Ring 1 is nudged by a milliradian now and then, until it moves freely."
             }
         }
     }

@@ -12,8 +12,8 @@ use super::error::CliError;
 use super::view::endpoint;
 use crate::attended::SimulatedMachine;
 use desk::commission::{
-    Attended, Backup, Change, Chosen, Conditions, DoTask, Done, Machine, Results, STEPS, Task,
-    ZerosBy, page, run as run_steps,
+    Attended, Backup, Change, Chosen, Conditions, DoTask, Done, Machine, Results, STEPS, ZerosBy,
+    page, run as run_steps,
 };
 use desk::date;
 use drawing::ReportError;
@@ -139,7 +139,7 @@ fn open(on: &Commissioned, answer: fn() -> io::Result<()>) -> Result<Box<dyn Mac
 pub(super) fn by_hand(answer: fn() -> io::Result<()>) -> DoTask {
     Box::new(move |task| {
         eprintln!("{}", task.words());
-        if task == Task::PutOnJig {
+        if task.is_said_to_be_done() {
             eprintln!("Press Enter when that is done.");
             answer()?;
         }

@@ -76,7 +76,7 @@ pub struct Machine {
     #[arg(id = "machine", long = "machine", value_name = "FILE")]
     pub file: Option<PathBuf>,
     /// The reference stage as no workshop builds it: guides without friction, stiff and exact, gears and encoders without errors, an ideal
-    /// supply. Its controller comes with the drawing's numbers, and the machine is off them by --mismatch.
+    /// supply. Its controller comes with the drawing's numbers; in a run the machine is off them by --mismatch.
     #[arg(long, conflicts_with_all = ["machine", "unknown"])]
     pub kind: bool,
     /// A machine as a workshop builds it, every number drawn by its usual size, plugs and zeros as they came: what a first start meets.

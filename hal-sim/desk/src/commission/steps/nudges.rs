@@ -1,7 +1,7 @@
 //! A rising voltage on one bridge after the other, both ways, until a ring moves: which one, which way, and what it takes.
 
 use super::wiring_picture::picture;
-use crate::commission::bench::Bench;
+use crate::commission::bench::{Bench, Ended};
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
@@ -10,11 +10,13 @@ use crate::commission::known::Known;
 /// Largest voltage of an excitation while nothing is known, V.
 pub(super) const USUAL_EXCITATION_V: f64 = 2.0;
 /// Where the voltage ends, V: break-away of a weak machine and the dead time; and in which time, s.
-const MOST_V: f64 = 1.6;
+pub(super) const MOST_V: f64 = 1.6;
 const SECONDS: f64 = 0.3;
 /// Way that is a motion, rad, and how many times as far the one moves as the others.
-const WAY_RAD: f64 = 1e-3;
+pub(super) const WAY_RAD: f64 = 1e-3;
 const LEAST_RATIO: f64 = 3.0;
+/// What has ended an excitation that moved a ring so far.
+pub(super) const BY_WAY: &str = "way";
 /// How unlike the three may be.
 const MOST_UNLIKE: f64 = 2.5;
 /// Until a ring has come to rest, s.
@@ -105,19 +107,28 @@ struct Nudge {
     volts: f64,
 }
 
-fn nudge(bench: &mut Bench<'_>, bridge: usize, volts: f64) -> Result<Nudge, CommissionError> {
-    let before = bench.pivots_rad()?;
+/// A rising voltage on one bridge, until something has moved or it is at its end.
+pub(super) fn ramp(
+    bench: &mut Bench<'_>,
+    bridge: usize,
+    volts: f64,
+) -> Result<Ended, CommissionError> {
     let line = format!(
         "EXC RAMP {} {volts} {} {}",
         bridge + 1,
         SECONDS * 1e3,
         WAY_RAD * 1e3
     );
-    let ended = bench.excite(&line, SECONDS)?;
+    bench.excite(&line, SECONDS)
+}
+
+fn nudge(bench: &mut Bench<'_>, bridge: usize, volts: f64) -> Result<Nudge, CommissionError> {
+    let before = bench.pivots_rad()?;
+    let ended = ramp(bench, bridge, volts)?;
     bench.delay(REST_S)?;
     let after = bench.pivots_rad()?;
     let ways = [0, 1, 2].map(|i| after[i] - before[i]);
-    if ended.by != "way" {
+    if ended.by != BY_WAY {
         return fail(
             format!("bridge {} moves nothing with {volts} V", bridge + 1),
             "its motor is not plugged in, a lead is broken, or its ring, carriage or guide is jammed: turn it by hand",

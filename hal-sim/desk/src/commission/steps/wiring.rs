@@ -1,15 +1,17 @@
 //! Encoders, supply and current sensors at rest, with the bridges asleep.
 
 use super::gains;
-use crate::commission::bench::{Bench, average};
+use crate::commission::bench::{Bench, Recorded, average};
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
 
-/// Ticks of the look at the encoders' noise, and most of it: an encoder's own 200 nrad and half as much again.
+/// Ticks of a look at an encoder's noise, and most of it: an encoder's own 200 nrad and half as much again.
 const TICKS: usize = 1_000;
 const MOST_NOISE_RAD: f64 = 300e-9;
+/// Looks that a machine with little friction has to come to rest, now that its motors have been switched off.
+const LOOKS: usize = 40;
 /// Most that a current sensor is off, A.
 const MOST_OFFSET_A: f64 = 0.05;
 /// How far the supply may be off its nominal value.
@@ -54,8 +56,7 @@ pub(super) fn run(
     }
     let (mut supply_v, nominal_v) = (0.0, bench.parameter(id::NOMINAL_SUPPLY)?);
     for pivot in 0..AXES {
-        let record = bench.record(pivot, TICKS, 1, None)?;
-        let noise_rad = deviation(&record.signals.angle_rad);
+        let (record, noise_rad) = at_rest(bench, pivot)?;
         found.push(Finding::new(
             format!("noise of the encoder at port {}", pivot + 1),
             format!("{:.0} nrad rms", noise_rad * 1e9),
@@ -87,6 +88,19 @@ pub(super) fn run(
         "the supply, its fuse and contactor; parameter 0x54500806 is the nominal one",
     ));
     Ok(())
+}
+
+/// A pivot's record once it rests, or the last of those in which it had to come to rest; and the noise of its angle.
+fn at_rest(bench: &mut Bench<'_>, pivot: usize) -> Result<(Recorded, f64), CommissionError> {
+    let mut looks = 1;
+    loop {
+        let record = bench.record(pivot, TICKS, 1, None)?;
+        let noise_rad = deviation(&record.signals.angle_rad);
+        if noise_rad < MOST_NOISE_RAD || looks == LOOKS {
+            return Ok((record, noise_rad));
+        }
+        looks += 1;
+    }
 }
 
 fn deviation(values: &[f64]) -> f64 {

@@ -1,8 +1,10 @@
-//! The platform in its jig, in the middle with guide 1 along x: there pivot 1 is at 0 deg, pivot 2 at 120, pivot 3 at 240.
+//! The platform in its jig, in the middle with guide 1 along x: there pivot 1 is at 0 deg, pivot 2 at 120, pivot 3 at 240. Then the jig is taken out:
+//! no motor works against one that somebody has forgotten.
 
+use super::nudges;
 use crate::commission::Task;
 use crate::commission::bench::{Bench, average};
-use crate::commission::found::{CommissionError, Finding, Found};
+use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
@@ -14,6 +16,9 @@ const COUNTS: f64 = 67_108_864.0;
 const TICKS: usize = 1_000;
 /// What the angles are off after it, rad: three counts.
 const MOST_LEFT_RAD: f64 = 3e-7;
+/// Until it is looked whether the jig is out, s, and how often: a minute with the nudges.
+const LOOK_S: f64 = 0.5;
+const LOOKS: usize = 75;
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
@@ -40,7 +45,26 @@ pub(super) fn run(
         left < MOST_LEFT_RAD,
         "the platform has moved in the jig: put it in again",
     ));
-    Ok(())
+    taken_out(bench)
+}
+
+/// Waits until the jig is out: what a nudge moves is not held.
+fn taken_out(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    bench.request(Task::TakeOutJig)?;
+    for _ in 0..LOOKS {
+        bench.delay(LOOK_S)?;
+        if nudges::ramp(bench, 0, nudges::MOST_V)?.by == nudges::BY_WAY {
+            return Ok(());
+        }
+    }
+    fail(
+        format!(
+            "{:.1} V have not moved ring 1 by {:.0} mrad for a minute: the jig is in",
+            nudges::MOST_V,
+            nudges::WAY_RAD * 1e3
+        ),
+        "take it out, then --from zeros; if it is out, ring 1 is jammed: turn it by hand",
+    )
 }
 
 /// Sets the zeros by what each angle is told too large by, rad.

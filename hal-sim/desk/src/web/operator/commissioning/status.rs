@@ -26,7 +26,7 @@ pub(super) struct Status {
 /// What the person is asked for.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Asks {
-    /// `turn` or `jig`.
+    /// `turn`, `jig` or `out`.
     pub task: &'static str,
     pub words: &'static str,
     /// Whether somebody has to say that it is done.
@@ -139,9 +139,10 @@ impl Told<Status> {
                 task: match task {
                     Task::Turn => "turn",
                     Task::PutOnJig => "jig",
+                    Task::TakeOutJig => "out",
                 },
                 words: task.words(),
-                waits: task == Task::PutOnJig && !is_simulated,
+                waits: task.is_said_to_be_done() && !is_simulated,
                 is_simulated,
             });
         });

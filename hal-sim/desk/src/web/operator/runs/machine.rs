@@ -182,17 +182,17 @@ impl Machine for PageMachine {
         match (&self.person, task) {
             (Some(person), _) => {
                 person(task);
-                if task == Task::PutOnJig {
+                if task.is_said_to_be_done() {
                     self.delay(JIG_S)?;
                 }
             }
-            // The encoders tell.
-            (None, Task::Turn) => {}
-            (None, Task::PutOnJig) => {
+            (None, task) if task.is_said_to_be_done() => {
                 self.control.wait(|| false);
                 (self.asks)(None);
                 self.check_end()?;
             }
+            // The encoders tell.
+            (None, _) => {}
         }
         Ok(())
     }
