@@ -111,7 +111,9 @@ const VELOCITY: [f64; 2] = [3.0, 500.0];
 /// tens of milliseconds after every move, or one that never ends, where friction holds. What is under the second number may cost ([`Limits::tail`]).
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const TAIL_UNDER: f64 = 150.0;
-const LEAD_TO_HZ: f64 = 3_000.0;
+/// Up to where a lead raises the gain, Hz. Up to 3,000 S(30 Hz) would be a tenth less, and the servos would bounce motors that no friction holds through
+/// the gaps of their gears, at 1 kHz, for as long as the full loop is in force after a move.
+const LEAD_TO_HZ: f64 = 1_500.0;
 /// Lowest frequency of a notch over the lowest resonance, the highest, Hz, its width over its frequency, and its gain. A wide and deep one far below what
 /// resonates, where the servos' corners are, would reject more at 30 Hz with a loop that half its gain makes unstable.
 const NOTCH_FROM: f64 = 0.5;
