@@ -72,6 +72,14 @@ fn with_gains(parameters: &Parameters, gains: &Gains) -> Parameters {
 /// step `tuning` of a commissioning would find with nothing measured wrong, no doubt of its model, and no friction that holds the stage off.
 #[must_use]
 pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    with_gains_within(parameters, stage, &Limits::ON_MODEL)
+}
+
+fn with_gains_within(
+    parameters: &Parameters,
+    stage: &StageParameters,
+    limits: &Limits,
+) -> Parameters {
     let model = loop_model(stage);
     let (chain, electrical) = &model;
     let centre = Place::centre();
@@ -84,7 +92,7 @@ pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Par
         electrical,
         &chain.resonances_hz(&centre),
         chain.inertia(&centre)[(0, 0)],
-        &Limits::ON_MODEL,
+        limits,
     );
     let sound = (tuned.ok()).and_then(|tuned| {
         let plants = plants(&model, &PLACES);
@@ -97,7 +105,7 @@ pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Par
 }
 
 /// Gains of the reference stage with all its imperfections: what a search found for it, to seven digits. Kept, so that figures stay those of the same
-/// loops: [`with_gains_tuned`] finds others, which reject 4 % more.
+/// loops: with their lead, up to 3,000 Hz, a search finds others now, which reject 4 % more; [`with_gains_tuned`] has less of a lead.
 const REFERENCE_GAINS: PivotGains = PivotGains {
     gains: parameters::Gains {
         position_1_s: 606.290_024_5,
@@ -249,11 +257,15 @@ mod tests {
         stage.plant.imperfections = Imperfections::ALL;
         let told = super::super::with_machine_told(&Parameters::REFERENCE, &stage);
         let plants = plants(&loop_model(&stage), &PLACES);
-        let [found, kept] =
-            [with_gains_tuned(&told, &stage), with_reference_gains(&told)].map(|told| {
-                let worst = Gains::of(&told).at_worst(&plants);
-                (told, worst.expect("a plant"))
-            });
+        let limits = Limits {
+            lead_to_hz: REFERENCE_GAINS.filters.lead.to_hz,
+            ..Limits::ON_MODEL
+        };
+        let found = with_gains_within(&told, &stage, &limits);
+        let [found, kept] = [found, with_reference_gains(&told)].map(|told| {
+            let worst = Gains::of(&told).at_worst(&plants);
+            (told, worst.expect("a plant"))
+        });
         println!("found {:?}\nkept {:?}", found.1, kept.1);
         assert!(kept.1.is_stable && kept.1.ms < Limits::ON_MODEL.ms);
         assert!(

@@ -94,14 +94,14 @@ struct Most {
 
 const WITH_JIG: Most = Most {
     seconds: 300.0,
-    left_within_periods_urad: 0.0111,
+    left_within_periods_urad: 0.0143,
     left_of_gears_urad: 2.52,
     rejection: 0.112,
 };
 const WITHOUT_JIG: Most = Most {
     seconds: 420.0,
     left_within_periods_urad: 0.0187,
-    left_of_gears_urad: 0.575,
+    left_of_gears_urad: 0.693,
     rejection: 0.13,
 };
 

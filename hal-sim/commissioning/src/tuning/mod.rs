@@ -41,7 +41,13 @@ pub struct Limits {
     pub share: f64,
     /// What a tail costs, over what rejection is worth: a position gain or a corner of the integral that is low, by its logarithm.
     pub tail: f64,
+    /// Frequency up to which a lead raises the gain, Hz.
+    pub lead_to_hz: f64,
 }
+
+/// Up to 3,000 Hz S(30 Hz) would be a tenth less, a fifth on a machine of which all is known; and servos would bounce motors that no friction holds
+/// through the gaps of their gears, at 1 kHz, for as long as the full loop is in force after a move.
+const LEAD_TO_HZ: f64 = 1_500.0;
 
 impl Limits {
     /// Ms of 1.9, -6 dB at resonances, all of the gain.
@@ -50,6 +56,7 @@ impl Limits {
         resonance_peak: 0.5,
         share: 1.0,
         tail: 0.0,
+        lead_to_hz: LEAD_TO_HZ,
     };
 
     /// What is sought on a model of the machine: a little less than what is asked of its loops. A resonance may be high where its phase is
@@ -59,6 +66,7 @@ impl Limits {
         resonance_peak: 10.0,
         share: 1.0,
         tail: 0.0,
+        lead_to_hz: LEAD_TO_HZ,
     };
 
     /// The same of a machine whose guides have friction, which holds it off where a tail is slow: some rejection is given for a faster one.
@@ -111,9 +119,6 @@ const VELOCITY: [f64; 2] = [3.0, 500.0];
 /// tens of milliseconds after every move, or one that never ends, where friction holds. What is under the second number may cost ([`Limits::tail`]).
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const TAIL_UNDER: f64 = 150.0;
-/// Up to where a lead raises the gain, Hz. Up to 3,000 S(30 Hz) would be a tenth less, and the servos would bounce motors that no friction holds through
-/// the gaps of their gears, at 1 kHz, for as long as the full loop is in force after a move.
-const LEAD_TO_HZ: f64 = 1_500.0;
 /// Lowest frequency of a notch over the lowest resonance, the highest, Hz, its width over its frequency, and its gain. A wide and deep one far below what
 /// resonates, where the servos' corners are, would reject more at 30 Hz with a loop that half its gain makes unstable.
 const NOTCH_FROM: f64 = 0.5;
@@ -360,7 +365,7 @@ impl Search<'_> {
                     notches: [notch(f1, w1, g1), notch(f2, w2, g2)],
                     lead: Lead {
                         from_hz: drive.resistance_ohm / drive.inductance_h / TAU,
-                        to_hz: LEAD_TO_HZ,
+                        to_hz: self.limits.lead_to_hz,
                     },
                 },
             }

@@ -19,6 +19,9 @@ const MOST_LEFT_RAD: f64 = 3e-7;
 /// Until it is looked whether the jig is out, s, and how often: a minute with the nudges.
 const LOOK_S: f64 = 0.5;
 const LOOKS: usize = 75;
+/// What ends a nudge of a ring that is held.
+const HELD_BY_TIME: &str = "time";
+const HELD_BY_CURRENT: &str = "current";
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
@@ -53,8 +56,15 @@ fn taken_out(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
     bench.request(Task::TakeOutJig)?;
     for _ in 0..LOOKS {
         bench.delay(LOOK_S)?;
-        if nudges::ramp(bench, 0, nudges::MOST_V)?.by == nudges::BY_WAY {
-            return Ok(());
+        match nudges::ramp(bench, 0, nudges::MOST_V)?.by.as_str() {
+            nudges::BY_WAY => return Ok(()),
+            HELD_BY_TIME | HELD_BY_CURRENT => {}
+            by => {
+                return fail(
+                    format!("a nudge to see whether the jig is out has ended by `{by}`"),
+                    "whoever has stopped it knows why; then --from zeros",
+                );
+            }
         }
     }
     fail(
