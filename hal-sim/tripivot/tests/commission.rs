@@ -26,7 +26,7 @@ const MOST_FRICTION_ERROR_AGAIN: f64 = 0.0096;
 const MOST_GEAR_ERROR: f64 = 0.03;
 
 /// And of zeros by forces, mrad.
-const MOST_ZERO_ERROR_MRAD: f64 = 3.7;
+const MOST_ZERO_ERROR_MRAD: f64 = 4.7;
 
 /// And of zeros in the jig or by the guides' ends, rad: guides of such machines stand 2 mrad off, and scales.
 const MOST_COARSE_ZERO_ERROR_RAD: f64 = 5.85e-3;
