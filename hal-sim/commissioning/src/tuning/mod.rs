@@ -153,7 +153,7 @@ const ON_FOUND: First = First {
 /// The lowest resonance of a machine of which none is known.
 const NO_RESONANCE_HZ: f64 = 1_000.0;
 /// Largest singular value of the sensitivity on what a machine may be as well: a little less than [`MOST_MS`], for what no model has.
-const MAY_BE_MS: f64 = 1.97;
+const MAY_BE_MS: f64 = 1.95;
 /// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
 const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;

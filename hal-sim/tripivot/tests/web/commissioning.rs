@@ -93,6 +93,8 @@ fn a_stop_of_any_page_ends_it_and_a_task_waits_for_its_person() {
     let done = told(&mut operator, |status| status["runs"] == false);
     assert_eq!(done["good"], true, "{done}");
     assert_eq!(done["steps"][0]["state"], "done");
+    // The step has nudged a ring to see that the jig is out: whoever looked on in silence meanwhile is gone.
+    let mut viewer = Viewer::ready(&page);
     let zero = |viewer: &mut Viewer| viewer.reply("SPA? 1 0x54500600").unwrap();
     let found = zero(&mut viewer);
     // What was before is given back.
