@@ -34,9 +34,9 @@ enum Came {
 fn main() {
     let all = of_all(&MACHINES, cores(), came);
     println!(
-        "| off, % | load, kg | commissioned in, s | demonstration: following error of the centre, um rms / peak | settling, ms mean / worst | 200 moves: settling, ms after the profile: median / 90 % / 99 % / worst | of the profile: median / 90 % / 99 % / worst | within 10 % | settled told within 10 % |"
+        "| off, % | load, kg | commissioned in, s | settling window found, LSB | demonstration: following error of the centre, um rms / peak | settling, ms mean / worst | 200 moves: settling, ms after the profile: median / 90 % / 99 % / worst | of the profile: median / 90 % / 99 % / worst | within 10 % | settled told within 10 % |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for (machine, came) in MACHINES.iter().zip(&all) {
         match came {
             Came::Refused(why) => println!("| {} | {} | refused: {why} |", machine[0], machine[1]),
@@ -80,7 +80,8 @@ fn came(&[mismatch_percent, payload_kg]: &[f64; 2]) -> Came {
     let moves = moves::of(&stage, parameters);
     Came::To([
         format!(
-            "{seconds:.0} | {demonstration} | {} | {:.1} % | {:.1} %",
+            "{seconds:.0} | {} | {demonstration} | {} | {:.1} % | {:.1} %",
+            parameters.window.counts,
             moves.settling(),
             100.0 * moves.within_a_tenth(),
             100.0 * moves.told_within_a_tenth()

@@ -89,8 +89,9 @@ fn turn(plant: &Plant, start_rad: f64, now_s: f64) -> External {
     )
 }
 
-/// The jig holds it.
-fn hold(plant: &Plant) -> External {
+/// What the jig holds a platform with that is put into it.
+#[must_use]
+pub fn hold(plant: &Plant) -> External {
     spring(
         plant,
         IN_JIG,

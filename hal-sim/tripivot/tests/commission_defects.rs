@@ -3,11 +3,11 @@
 use desk::commission::{Chosen, Done, ZerosBy, run};
 use hal_sim::front::{Host, Wiring};
 use hal_sim::machine::devices::{EncoderFault, SettingsFlash};
-use hal_sim::machine::plant::External;
 use hal_sim::machine::unknown;
 use std::cell::Cell;
 use std::rc::Rc;
 use tripivot::attended::SimulatedMachine;
+use tripivot::person::hold;
 
 /// Furthest way of a pivot and largest kinetic energy by the drives alone, until the rings have servos.
 const MOST_WAY_RAD: f64 = 20e-3;
@@ -126,23 +126,15 @@ fn an_encoder_whose_coupling_slips_is_refused_when_it_is_turned_by_hand() {
 #[test]
 fn a_jig_that_has_been_forgotten_is_refused_before_a_servo_works_against_it() {
     let mut before = None;
-    let mut jig = None;
+    let mut is_in = false;
     let all = commissioned(move |host| {
         let plant = &mut host.stage.plant;
         let pose = plant.pose();
         // No motor and no hand moves it by a millimetre within a tick.
         let [x_m, y_m, _] = before.replace(pose).unwrap_or(pose);
-        if (pose[0] - x_m).hypot(pose[1] - y_m) > 1e-3 {
-            jig = Some(pose);
-        }
-        if let Some(jig) = jig {
-            let velocity = plant.velocity();
-            let pull = |k: usize| 2e7 * (jig[k] - pose[k]) - 8e3 * velocity[k];
-            plant.set_external(External {
-                force_n: [pull(0), pull(1)],
-                torque_n_m: 5e4 * (jig[2] - pose[2]) - 30.0 * velocity[2],
-                ..External::default()
-            });
+        is_in |= (pose[0] - x_m).hypot(pose[1] - y_m) > 1e-3;
+        if is_in {
+            plant.set_external(hold(plant));
         }
     });
     is_refused(&all, "zeros", "the jig is in");

@@ -9,7 +9,7 @@ const PATIENCE_MS = 2000;
 const SECONDS = 5;
 
 export class TaskPicture {
-  /** `turn` or `jig`; another, or empty: nothing is drawn. */
+  /** `turn` or `jig`; another, or empty: what was drawn stays. */
   task = "";
   #tasks = {};
   #drawn = "";

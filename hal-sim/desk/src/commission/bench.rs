@@ -52,11 +52,16 @@ pub(crate) struct Bench<'a> {
 /// How an excitation has ended.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ended {
-    /// Why: `time`, `way`, `current`.
+    /// Why: [`BY_TIME`], [`BY_WAY`], [`BY_CURRENT`], or that it was stopped.
     pub by: String,
     /// Seconds that it took.
     pub seconds: f64,
 }
+
+/// It came to its end, or a guard on way or current ended it, as `EXC?` says.
+pub(crate) const BY_TIME: &str = "time";
+pub(crate) const BY_WAY: &str = "way";
+pub(crate) const BY_CURRENT: &str = "current";
 
 /// Limits that the drives bear, as parameters.
 pub(super) const fn limits(borne: &BorneLimits) -> [(u32, f64); 3] {

@@ -1,6 +1,6 @@
 //! A ring that is moved alone, with the servo off but for a soft one of each ring, until a guide is at its end.
 
-use super::bench::{Bench, Ended};
+use super::bench::{BY_CURRENT, Bench, Ended};
 use super::found::{CommissionError, fail};
 use super::id;
 use super::id::AXES;
@@ -23,8 +23,7 @@ const NEAR_MRAD_S: f64 = 200.0;
 /// Then back by so much, and against it again, so slowly.
 const BACK_MRAD: f64 = 8.0;
 const BACK_MRAD_S: f64 = 40.0;
-/// What has ended an excitation that came to an end; current that does, A; more where that was friction, and how often.
-const BY_CURRENT: &str = "current";
+/// Current that ends an excitation at an end, A; more where that was friction, and how often.
 const CURRENT_A: f64 = 0.6;
 const MORE: f64 = 1.4;
 const TRIES: usize = 4;

@@ -1,7 +1,7 @@
 //! A rising voltage on one bridge after the other, both ways, until a ring moves: which one, which way, and what it takes.
 
 use super::wiring_picture::picture;
-use crate::commission::bench::{Bench, Ended};
+use crate::commission::bench::{BY_WAY, Bench, Ended};
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
@@ -15,8 +15,6 @@ const SECONDS: f64 = 0.3;
 /// Way that is a motion, rad, and how many times as far the one moves as the others.
 pub(super) const WAY_RAD: f64 = 1e-3;
 const LEAST_RATIO: f64 = 3.0;
-/// What has ended an excitation that moved a ring so far.
-pub(super) const BY_WAY: &str = "way";
 /// How unlike the three may be.
 const MOST_UNLIKE: f64 = 2.5;
 /// Until a ring has come to rest, s.

@@ -1,9 +1,9 @@
 //! The platform in its jig, in the middle with guide 1 along x: there pivot 1 is at 0 deg, pivot 2 at 120, pivot 3 at 240. Then the jig is taken out:
-//! no motor works against one that somebody has forgotten.
+//! no servo works against one that somebody has forgotten.
 
 use super::nudges;
 use crate::commission::Task;
-use crate::commission::bench::{Bench, average};
+use crate::commission::bench::{BY_CURRENT, BY_TIME, BY_WAY, Bench, average};
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
@@ -19,9 +19,6 @@ const MOST_LEFT_RAD: f64 = 3e-7;
 /// Until it is looked whether the jig is out, s, and how often: a minute with the nudges.
 const LOOK_S: f64 = 0.5;
 const LOOKS: usize = 75;
-/// What ends a nudge of a ring that is held.
-const HELD_BY_TIME: &str = "time";
-const HELD_BY_CURRENT: &str = "current";
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
@@ -48,7 +45,10 @@ pub(super) fn run(
         left < MOST_LEFT_RAD,
         "the platform has moved in the jig: put it in again",
     ));
-    taken_out(bench)
+    if left < MOST_LEFT_RAD {
+        taken_out(bench)?;
+    }
+    Ok(())
 }
 
 /// Waits until the jig is out: what a nudge moves is not held.
@@ -57,8 +57,9 @@ fn taken_out(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
     for _ in 0..LOOKS {
         bench.delay(LOOK_S)?;
         match nudges::ramp(bench, 0, nudges::MOST_V)?.by.as_str() {
-            nudges::BY_WAY => return Ok(()),
-            HELD_BY_TIME | HELD_BY_CURRENT => {}
+            BY_WAY => return Ok(()),
+            // It is held.
+            BY_TIME | BY_CURRENT => {}
             by => {
                 return fail(
                     format!("a nudge to see whether the jig is out has ended by `{by}`"),
