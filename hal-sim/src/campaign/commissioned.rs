@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use firmware::parameters::Parameters;
 
-use crate::machine::devices::{COUNTS_PER_TURN, SettingsFileError, SettingsFlash, StageParameters};
+use crate::machine::devices::{SettingsFileError, SettingsFlash};
 use crate::machine::unknown;
-use crate::rig::{ControllerMemory, Rig};
+use crate::rig::{ControllerMemory, Rig, leads_turns, turn_zeros};
 
 /// What a controller keeps, in the folder of its machine.
 pub const SETTINGS: &str = "settings.flash";
@@ -88,63 +88,11 @@ impl Commissioned {
         if !parameters.commissioned {
             return Err(CommissionedError::NotCommissioned(settings.to_owned()));
         }
-        let lead = mean_lead_turns(&parameters, &stage);
-        turn_frame(&mut parameters, lead);
+        let mean_turns = leads_turns(&parameters, &stage).iter().sum::<f64>() / 3.0;
+        turn_zeros(&mut parameters, [mean_turns; 3]);
         Ok(Self {
             machine,
             parameters,
         })
-    }
-}
-
-/// What pivots are told further left than they are, turns: the mean of all.
-fn mean_lead_turns(parameters: &Parameters, stage: &StageParameters) -> f64 {
-    let leads = [0, 1, 2].map(|i| {
-        let (told, truth) = (&parameters.encoders[i], &stage.encoders[i]);
-        let behind = truth.zero_counts.wrapping_sub(told.zero_counts) % COUNTS_PER_TURN;
-        let turns = f64::from(behind) / f64::from(COUNTS_PER_TURN);
-        if told.reversed { -turns } else { turns }
-    });
-    let [first, ..] = leads;
-    // They differ by little; none is taken half a turn off.
-    let beside = leads.map(|lead| (lead - first) - (lead - first).round());
-    first + beside.iter().sum::<f64>() / 3.0
-}
-
-/// Turns the frame to the left: pivots are told so many turns less. What goes with their angles goes on with the same places.
-fn turn_frame(parameters: &mut Parameters, turns: f64) {
-    for encoder in &mut parameters.encoders {
-        let turns = if encoder.reversed { -turns } else { turns };
-        let counts = (turns.rem_euclid(1.0) * f64::from(COUNTS_PER_TURN)) as u32;
-        encoder.zero_counts = encoder.zero_counts.wrapping_add(counts) % COUNTS_PER_TURN;
-    }
-    for (gear, drive) in (parameters.servo.gear_errors.iter_mut()).zip(&parameters.drives) {
-        gear.phase_deg = (gear.phase_deg + 360.0 * turns * drive.gear_ratio).rem_euclid(360.0);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rig::with_wiring_told;
-
-    #[test]
-    fn zeros_of_any_jig_are_turned_to_the_drawn_ones() {
-        for (machine, turns) in [(7, 0.083), (8, -0.41), (9, 0.0)] {
-            let stage = unknown(machine);
-            let told = with_wiring_told(&Parameters::REFERENCE, &stage);
-            let mut jig = told.clone();
-            turn_frame(&mut jig, -turns);
-            let lead = mean_lead_turns(&jig, &stage);
-            assert!(
-                (lead - turns - (lead - turns).round()).abs() < 1e-7,
-                "{lead}"
-            );
-            turn_frame(&mut jig, lead);
-            for (found, truth) in jig.encoders.iter().zip(&told.encoders) {
-                let off = found.zero_counts.wrapping_sub(truth.zero_counts) % COUNTS_PER_TURN;
-                assert!(off.min(COUNTS_PER_TURN - off) < 4, "{off} counts");
-            }
-        }
     }
 }

@@ -66,7 +66,7 @@ impl Default for RunOptions {
 }
 
 impl RunOptions {
-    /// The reference stage as a workshop builds it, under a controller that is told what there is to know of it.
+    /// The reference stage as a workshop builds it, under a controller with the settings that its commissioning found, and calibrated.
     #[must_use]
     pub fn reference() -> Self {
         let mut machine = StageParameters::REFERENCE;

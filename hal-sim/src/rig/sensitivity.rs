@@ -34,8 +34,8 @@ pub struct Sensitivity {
     pub fault: Option<String>,
 }
 
-/// The reference stage, or a kind one; one with each imperfection more, or less; and the other of the two. The controllers of an unkind stage are
-/// told what there is to know of it.
+/// The reference stage, or a kind one; one with each imperfection more, or less; and the other of the two. The controllers of an unkind stage have
+/// what its commissioning found of it, as far as it is there.
 #[must_use]
 pub fn compared(of_kind: bool) -> Vec<Compared> {
     let (kind, all) = (Imperfections::CALIBRATED, Imperfections::ALL);

@@ -1,7 +1,9 @@
 //! A controller that is told of the machine before it: the true numbers in place of the model's, each of them something that `SPA` sets.
 
 use super::calibrated::calibration_told;
-use super::gains::{with_gains_tuned, with_motion_fitted, with_reference_gains};
+use super::gains::{with_gains_tuned, with_motion_fitted};
+use super::shipped::with_reference_settings;
+use super::{leads_turns, turn_zeros};
 use crate::machine::devices::{COUNTS_PER_TURN, StageParameters};
 use commissioning::tuning::IDENTIFIED_LEARNING;
 use firmware::calibration::MachineCalibration;
@@ -22,7 +24,9 @@ pub enum Told {
     MachineAndRipple,
     /// And all else that it can be told: [`with_everything_told`].
     Everything,
-    /// What the reference stage comes with: all that is true of that machine, whatever this one is. [`with_reference_told`].
+    /// What the reference stage comes with, whatever this one is: what `tripivot commission` found of it
+    /// (`tripivot machine >ref.toml; tripivot commission --machine ref.toml` leaves it in `settings.txt`, here `reference_stage.txt`), and the
+    /// calibration that would come of it if nothing were measured wrong, zeros with it.
     Reference,
 }
 
@@ -153,12 +157,30 @@ pub fn with_everything_told(parameters: &Parameters, stage: &StageParameters) ->
     with_motion_fitted(&with_gains_tuned(&told, stage))
 }
 
-/// The same of the reference stage, with the imperfections of this one: what is not there must not be made up for. Its gains are the ones that a
-/// search would find.
-#[must_use]
-pub fn with_reference_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
-    let told = with_numbers_told(parameters, &reference(stage));
-    with_motion_fitted(&with_reference_gains(&told))
+/// Zeros are the true ones, as those of a calibration; and what of the reference stage is not on this one is not made up for.
+fn with_reference_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let (reference, on) = (reference(stage), &stage.plant.imperfections);
+    let mut told = with_reference_settings(parameters);
+    let leads = leads_turns(&told, &reference);
+    turn_zeros(&mut told, leads);
+    if !on.motor_friction {
+        for drive in &mut told.drives {
+            drive.coulomb_n_m -= reference.plant.motor_friction.coulomb;
+        }
+    }
+    if !on.guide_friction {
+        (told.guides.coulomb_n, told.guides.viscous_n_s_m) = (0.0, 0.0);
+    }
+    if !on.guide_compliance {
+        told.guides.stiffness_n_um = 0.0;
+    }
+    if !on.gear_error {
+        told.servo.gear_errors = Parameters::REFERENCE.servo.gear_errors;
+    }
+    if !on.subdivisional_error {
+        told.subdivision = Parameters::REFERENCE.subdivision;
+    }
+    told
 }
 
 fn reference(stage: &StageParameters) -> StageParameters {

@@ -9,7 +9,7 @@ use hal_sim::machine::devices::{COUNTS_PER_TURN, SettingsFlash, StageParameters}
 use hal_sim::machine::plant::Imperfections;
 use hal_sim::machine::unknown;
 use hal_sim::rig::run::{RunOptions, machine_settings, stage_parameters};
-use hal_sim::rig::{Told, loop_model, with_reference_gains};
+use hal_sim::rig::{Told, loop_model};
 use tripivot::attended::SimulatedMachine;
 
 #[test]
@@ -184,7 +184,8 @@ fn gains_and_limits_are_for_what_the_platform_also_carries() {
     stage.plant.imperfections = Imperfections::ALL;
     let flash = SettingsFlash::in_memory();
     let mut machine = SimulatedMachine::told(&stage, flash, Told::Machine);
-    let for_one = with_reference_gains(machine.parameters());
+    let before = machine.parameters().clone();
+    let for_one = Told::Reference.parameters(&before, &stage);
     let for_both = Chosen::tune().also_carrying(MORE_KG).expect("a weight");
     let ran = run(&mut machine, &for_both, &mut |_| ()).expect("it answers");
     for done in &ran.done {
@@ -200,7 +201,7 @@ fn gains_and_limits_are_for_what_the_platform_also_carries() {
     assert_eq!(told("with this load and 5 kg more"), 2);
     let for_both = machine.parameters();
     let [one, both] = [&for_one, for_both].map(|all| ms_with_more(&stage, MORE_KG, all));
-    let accelerations = [&for_one, for_both].map(|all| all.limits.pivot_acceleration_rad_s2);
+    let accelerations = [&before, for_both].map(|all| all.limits.pivot_acceleration_rad_s2);
     println!(
         "Ms with {MORE_KG} kg more {one:.2?}, with gains for both {both:.2?}; {accelerations:.0?}"
     );

@@ -25,7 +25,8 @@ pub const SECTIONS: &[Section] = &[
         name: "demonstration",
         title: "The demonstration",
         group: Group::Demonstration,
-        about: "A machine as a workshop builds it, every imperfection on, whose controller has been told what there is to know of it.",
+        about: "A machine as a workshop builds it, every imperfection on, whose controller has the settings that `tripivot commission` found for it, and \
+                a calibration, zeros with it, in which nothing was measured wrong.",
         command: "cargo run --release",
         short: None,
         kind: Kind::Deterministic,

@@ -23,6 +23,7 @@ use hal_sim::machine::devices::SettingsFlash;
 const REPORT: &str = "report.html";
 const RESULTS: &str = "results.json";
 const BEFORE: &str = "before.txt";
+const FOUND: &str = "settings.txt";
 const SETTINGS: &str = "settings.flash";
 /// The report of a loop that is only looked at.
 const RESPONSE: &str = "frf.html";
@@ -75,6 +76,7 @@ fn commission(
     if !failed {
         // What a run that failed has measured is in its report; what is kept is what was.
         results.write(&path, earlier.as_ref())?;
+        Backup::of(machine.as_mut())?.write(&on.out.join(FOUND))?;
     }
     let verdict = if failed {
         "not commissioned"

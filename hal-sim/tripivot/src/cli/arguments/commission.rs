@@ -64,8 +64,8 @@ pub(in super::super) struct Commissioned {
     /// Seed of the simulated noise.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     pub(in super::super) seed: u64,
-    /// Folder for the report, its numbers (results.json, which the next run into it is held against), the loops' lines as tables, and what the
-    /// controller was told before (before.txt); of a simulated machine for its controller's settings, too.
+    /// Folder for the report, its numbers (results.json, which the next run into it is held against), the loops' lines as tables, what the
+    /// controller was told before (before.txt) and what it keeps now (settings.txt); of a simulated machine for its controller's flash, too.
     #[arg(long, value_name = "DIR", default_value = "tripivot-commission")]
     pub(in super::super) out: PathBuf,
     /// Periods of the encoders' scale in a turn, as their data sheet has them (lines of an optical scale), for the step `sde`; without it those
