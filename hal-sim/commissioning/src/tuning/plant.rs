@@ -25,10 +25,20 @@ pub struct Plant {
     pub(super) at: Vec<At>,
 }
 
-/// Places that gains have to be good at, track radii: in the middle, and a ring's width from the rim, once towards each guide.
-pub const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.7, 0.0], [-0.35, 0.6], [-0.35, -0.6]];
+/// Places that gains have to be good at, track radii: in the middle, and at the rim of the reference stage's disk, midway between two guides, where the
+/// platform rings most on them, and towards one (guides lie along 90, 210 and 330 deg); then at the others. Elsewhere it rings less: `hal-sim` tests that
+/// gains which are sound here are so all over the disk.
+pub const PLACES: [[f64; 2]; 7] = [
+    [0.0, 0.0],
+    [0.69282, 0.4],
+    [0.0, 0.8],
+    [-0.69282, 0.4],
+    [0.0, -0.8],
+    [-0.69282, -0.4],
+    [0.69282, -0.4],
+];
 /// How many of them a search looks at; the others differ by the load's centre alone, and are looked at after it.
-pub const SEARCHED: usize = 2;
+pub const SEARCHED: usize = 3;
 
 /// Lowest frequency of a grid, Hz; its highest, over half the ticks' rate; where resonances and margins are, from, Hz, and to, over the highest; points
 /// of the three parts, equal by their logarithms.

@@ -121,7 +121,7 @@ fn guides(machine: &StageParameters, all: &[Done]) -> Figures {
 fn loops(all: &[Done]) -> Figures {
     let worst = |step: &str, name: &str| {
         let at = |place: &str| number(all, step, &format!("{name} {place}"), "");
-        f64::max(at("in the middle"), at("at X 70 Y 0"))
+        f64::max(at("in the middle"), at("at X 66 Y 38"))
     };
     let [safe, tuned] = ["response", "tuning"].map(|step| worst(step, "S(30 Hz)"));
     vec![

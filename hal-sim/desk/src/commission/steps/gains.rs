@@ -8,6 +8,7 @@ use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
+use crate::commission::sines::NEAR_RIM;
 use crate::record::RecordError;
 use commissioning::tuning::{Gains, rest_stiffness};
 
@@ -20,7 +21,7 @@ const MOST_SHARE: f64 = 4.0;
 /// What is used of the share at which it does not ring yet.
 const MARGIN: f64 = 0.3;
 /// Where, mm.
-const PLACES: [[f64; 2]; 2] = [[0.0, 0.0], [60.0, 0.0]];
+const PLACES: [[f64; 2]; 2] = [[0.0, 0.0], [NEAR_RIM.x_mm, NEAR_RIM.y_mm]];
 /// Ticks of a record, and of its end, which is looked at: 50 ms after the kick.
 const TICKS: usize = 1_500;
 const END: usize = 400;

@@ -8,7 +8,7 @@ use crate::commission::id;
 use crate::commission::known::Known;
 use crate::commission::measured_loop::{MeasuredLoop, plot};
 use crate::commission::servo_gains;
-use crate::commission::sines::{CENTRE, FAR_OUT, PEAK_V};
+use crate::commission::sines::{CENTRE, NEAR_RIM, PEAK_V};
 
 /// Most that two ways of measuring the same may differ by.
 const MOST_OFF: f64 = 0.2;
@@ -30,7 +30,7 @@ pub(super) fn run(
     let gains = servo_gains::read(bench)?;
     let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
     let excited = std::mem::take(&mut known.excited);
-    for spot in [CENTRE, FAR_OUT] {
+    for spot in [CENTRE, NEAR_RIM] {
         let measured = match excited.iter().find(|(place, _)| *place == spot) {
             Some((_, excited)) => MeasuredLoop::new(excited, spot, &model),
             None => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
