@@ -271,7 +271,7 @@ fn draw_errors(
         factor: 1.0,
         series: &[
             series("true pose", colour::STEEL, 3),
-            series("following, by the encoders", colour::CENTRE, 0),
+            series("following", colour::CENTRE, 0),
         ],
         steps: Steps::Decimal,
         from_zero: true,
@@ -286,7 +286,7 @@ fn draw_errors(
         ),
         series: &[
             series("true pose", colour::STEEL, 4),
-            series("following, by the encoders", colour::THETA, 1),
+            series("following", colour::THETA, 1),
         ],
         ..chart
     };
