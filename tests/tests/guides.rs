@@ -81,7 +81,8 @@ fn a_platform_on_soft_guides_is_where_it_should_be() {
     let options = machine(false, true);
     let [untold, told] = TWINS.map(|twin| errors(&options, twin));
     println!("untold {untold:?}, told {told:?}");
-    // 31 and 83 nm: what the encoders see is all that is left. The pushes for it cost 3 ms of settling.
+    // 31 and 83 nm, 31 of them seen by the encoders: that is all that is left. The pushes for it cost 3 ms of settling.
+    assert!(told[1] < 1.03 * told[0], "{told:?}");
     assert!(
         told[1] < 0.0346 && untold[1] > 0.070,
         "{told:?} for {untold:?}"

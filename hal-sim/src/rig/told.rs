@@ -65,7 +65,7 @@ impl fmt::Display for Told {
             Self::Machine => "machine",
             Self::MachineAndRipple => "machine and ripple",
             Self::Everything => "everything",
-            Self::Reference => "what the reference stage is",
+            Self::Reference => "what commissioning found",
         })
     }
 }

@@ -3,7 +3,7 @@
 use super::bench::Bench;
 use super::id::{self, AXES};
 use super::measured_loop::MeasuredLoop;
-use super::sines::{Excited, Spot};
+use super::sines::Excited;
 use crate::record::RecordError;
 use commissioning::drive_model::DriveModel;
 use commissioning::platform::Carriages;
@@ -35,8 +35,8 @@ pub(super) struct Known {
     pub model: Option<DriveModel>,
     /// Friction of the carriages along their guides.
     pub carriages: Option<Carriages>,
-    /// What was recorded for it, in the middle and far out.
-    pub excited: Vec<(Spot, Excited)>,
+    /// What was recorded for it in the middle.
+    pub excited: Option<Excited>,
     /// Loops as measured, with the gains in force.
     pub loops: Vec<MeasuredLoop>,
 }

@@ -54,11 +54,7 @@ pub(super) fn run(
         ));
         identified = identify(bench, known, GENTLE_V)?;
     }
-    let Identified {
-        excited,
-        far,
-        model,
-    } = identified;
+    let Identified { excited, model } = identified;
     let quality = quality(&excited.lines);
     found.push(Finding::new(
         format!("share of the angles that answers to the drive, up to {QUALITY_TO_HZ:.0} Hz"),
@@ -74,14 +70,13 @@ pub(super) fn run(
     tell_drives(bench, known, found, &model)?;
     tell_platform(bench, found, &model.mechanical)?;
     known.model = Some(model);
-    known.excited = vec![(CENTRE, excited), (FAR_OUT, far)];
+    known.excited = Some(excited);
     Ok(())
 }
 
-/// What was recorded, and the model of it.
+/// What was recorded in the middle, and the model of all that was.
 struct Identified {
     excited: Excited,
-    far: Excited,
     model: Result<DriveModel, DriveError>,
 }
 
@@ -121,11 +116,7 @@ fn identify(
         far_place: &far_place,
     };
     let model = drive_model(&excited.runs, &responses, &Timing::STAGE, &before);
-    Ok(Identified {
-        excited,
-        far,
-        model,
-    })
+    Ok(Identified { excited, model })
 }
 
 /// Sets the largest voltage of an excitation, which takes a servo that is off.

@@ -1,4 +1,4 @@
-//! The loop as it is with the gains so far: in the middle, and far out.
+//! The loop as it is with the gains so far: in the middle, as identification has recorded it, and near the rim.
 
 use super::identification::allow;
 use super::step_response::step_response;
@@ -24,16 +24,16 @@ pub(super) fn run(
             "begin with the step `identification`",
         );
     };
-    let peak_v = (known.excited.first()).map_or(PEAK_V, |(_, excited)| excited.peak_v);
+    let excited = known.excited.take();
+    let peak_v = (excited.as_ref()).map_or(PEAK_V, |excited| excited.peak_v);
     allow(bench, peak_v)?;
     known.loops.clear();
     let gains = servo_gains::read(bench)?;
     let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
-    let excited = std::mem::take(&mut known.excited);
     for spot in [CENTRE, NEAR_RIM] {
-        let measured = match excited.iter().find(|(place, _)| *place == spot) {
-            Some((_, excited)) => MeasuredLoop::new(excited, spot, &model),
-            None => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
+        let measured = match &excited {
+            Some(excited) if spot == CENTRE => MeasuredLoop::new(excited, spot, &model),
+            _ => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
         };
         found.push(told(&measured));
         measured.tell_numbers(found);
