@@ -95,7 +95,8 @@ class Programs:
     def test_command_levels(self):
         stage = self.stage
         gain = 0x54500300
-        before = stage.qSPA(1, gain)[1][gain]
+        # A number with as many digits as the client writes.
+        before = round(stage.qSPA(1, gain)[1][gain], 6)
         self.assert_refused(gcserror.E60_PI_CNTR_PARAM_PROTECTION, stage.SPA, 1, gain, before + 1)
         self.assert_refused(gcserror.E56_PI_CNTR_INVALID_PASSWORD, stage.CCL, 1, "sesame")
         self.assertEqual(stage.qCCL(), 0)

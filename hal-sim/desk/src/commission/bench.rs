@@ -3,7 +3,7 @@
 use super::found::{CommissionError, fail};
 use super::id;
 use super::id::AXES;
-use super::{Machine, Task};
+use super::{Aside, Machine, Task};
 use crate::record::desk::strange;
 use crate::record::{Record, RecordError, TABLES, answer};
 use commissioning::record::Signals;
@@ -25,8 +25,8 @@ pub(super) const ANGLE: &str = "2";
 const OF_PIVOT: [&str; 3] = [DUTY, CURRENT, ANGLE];
 pub(super) const SUPPLY: &str = "0 201";
 /// Parameters: a record's points, those before its trigger, and the control period.
-const POINTS: &str = "0x16000201";
-const BEFORE: &str = "0x54500900";
+const POINTS: u32 = 0x1600_0201;
+const BEFORE: u32 = 0x5450_0900;
 const PERIOD: u32 = 0x0E00_0200;
 /// What a controller answers that has no store.
 const NO_STORE: u16 = ErrorCode::NotForStage.number();
@@ -47,6 +47,14 @@ pub(crate) struct Bench<'a> {
     pub period_s: f64,
     /// Rows that a record has.
     points: usize,
+    /// The recorder as the user has it, once records have been reserved.
+    recorder: Option<Recorder>,
+}
+
+/// What of the recorder is the user's: the rows of a record, and what its tables record, as `DRC?` tells it.
+struct Recorder {
+    points: Aside,
+    tables: String,
 }
 
 /// How an excitation has ended.
@@ -86,6 +94,7 @@ impl<'a> Bench<'a> {
             machine,
             period_s: 0.0,
             points: 0,
+            recorder: None,
         };
         bench.period_s = bench.parameter(PERIOD)?;
         Ok(bench)
@@ -387,13 +396,37 @@ impl<'a> Bench<'a> {
 
     /// Gives records so many rows: not in motion. Records that are shorter may then be made in motion.
     pub fn reserve(&mut self, rows: usize) -> Answered<()> {
-        // Fewer tables leave room for more rows.
-        for table in 1..=TABLES {
-            self.ask(&format!("DRC {table} 0 0"))?;
+        let values = [(POINTS, rows as f64), (BEFORE, 0.0)];
+        if self.recorder.is_some() {
+            self.clear_tables()?;
+            self.set(&values)?;
+        } else {
+            let tables = self.ask("DRC?")?;
+            self.clear_tables()?;
+            let points = Aside::set(self, &values)?;
+            self.recorder = Some(Recorder { points, tables });
         }
-        self.ask(&format!("SPA 1 {POINTS} {rows} 1 {BEFORE} 0"))?;
         self.points = rows;
         Ok(())
+    }
+
+    /// The recorder is the user's again: not in motion.
+    pub fn give_back_recorder(&mut self) -> Answered<()> {
+        let Some(Recorder { points, tables }) = self.recorder.take() else {
+            return Ok(());
+        };
+        self.clear_tables()?;
+        points.give_back(self)?;
+        for table in tables.lines() {
+            self.ask(&format!("DRC {}", table.trim().replace('=', " ")))?;
+        }
+        self.points = 0;
+        Ok(())
+    }
+
+    /// Fewer tables leave room for more rows.
+    fn clear_tables(&mut self) -> Answered<()> {
+        (1..=TABLES).try_for_each(|table| self.ask(&format!("DRC {table} 0 0")).map(drop))
     }
 
     /// A record of a pivot while a line is carried out: every tick, or less often.

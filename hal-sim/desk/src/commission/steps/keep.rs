@@ -14,6 +14,7 @@ pub(super) fn run(
 ) -> Result<(), CommissionError> {
     bench.ask("SVO X 0")?;
     bench.delay(0.2)?;
+    bench.give_back_recorder()?;
     // As much as a machine that nobody knows is given: whoever commissions it again finds it so.
     bench.set(&[(id::EXCITATION_V, USUAL_EXCITATION_V)])?;
     bench.ask("WPA 100")?;
