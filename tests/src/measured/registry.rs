@@ -154,8 +154,9 @@ pub const SECTIONS: &[Section] = &[
         title: "Move and settle, and at rest",
         group: Group::Motion,
         about: "200 random moves of 1 mm and more on the simulated stage, as the controller comes and told the machine's numbers by parameters: \
-                time from the command to within +-2 encoder LSB, after the \
-                profile and as a multiple of it, and the share of moves within 1.1 of it. Then the stage at rest, half a second at a \
+                time from the command until every pivot stays within +-2 encoder LSB, after the \
+                profile and as a multiple of it, and the share of moves within 1.1 of it. By each reading, where one that is noise counts, and \
+                by the mean of a millisecond, as the controller judges it. Then the stage at rest, half a second at a \
                 time: what moves, and how the motors' duty does.",
         command: "cargo bench --bench settle",
         short: None,
