@@ -18,6 +18,9 @@ AXES = ["X", "Y", "Z", "U", "V", "W"]
 PLACE_MM = 1e-3
 """How near a settled stage is to its target, mm or deg: a hundred encoder counts, and more than its noise."""
 
+START_S = 60
+"""Longest time that an emulated chip is given to start."""
+
 ARGUMENTS = argparse.Namespace()
 
 
@@ -455,6 +458,11 @@ class OverChip(Drive, unittest.TestCase):
 
     @classmethod
     def open(cls):
+        # It starts for as long as PIPython waits for an answer, on a busy machine for longer.
+        with socket.create_connection(("127.0.0.1", ARGUMENTS.chip), timeout=START_S) as starting:
+            starting.sendall(b"*IDN?\n")
+            with starting.makefile("rb") as answers:
+                answers.readline()
         return PISocket(host="127.0.0.1", port=ARGUMENTS.chip)
 
 
