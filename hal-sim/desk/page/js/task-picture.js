@@ -9,7 +9,7 @@ const PATIENCE_MS = 2000;
 const SECONDS = 5;
 
 export class TaskPicture {
-  /** `turn` or `jig`; another, or empty: what was drawn stays. */
+  /** `turn` or `jig`; for another, or none, there is no picture. */
   task = "";
   #tasks = {};
   #drawn = "";
@@ -28,6 +28,7 @@ export class TaskPicture {
 
   draw() {
     const frames = this.#tasks[this.task];
+    this.canvas.style.visibility = frames ? "visible" : "hidden";
     if (!frames || !inSight(this.canvas)) return;
     const share = this.still.matches ? 0.99 : (performance.now() / 1000 / SECONDS) % 1;
     const frame = Math.floor(share * frames.length);
