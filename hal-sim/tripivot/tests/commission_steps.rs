@@ -50,34 +50,33 @@ fn a_kind_machine_comes_to_rest_before_it_is_looked_at_and_its_jig_holds_it() {
     }
 }
 
-/// What its steps record with is not what the user does, and is not kept.
+/// What its steps record with is not what the user does: neither after some that keep what they find nor after some that do not.
 #[test]
-fn the_recorder_is_the_users_again_once_it_is_commissioned() {
-    let mut machine = SimulatedMachine::told(
-        &StageParameters::REFERENCE,
-        SettingsFlash::in_memory(),
-        Told::Machine,
-    );
-    machine.ask("CCL 1 ADVANCED").expect("it is taken");
-    for line in ["SPA 1 0x16000201 2100 1 0x54500900 17", "DRC 2 Y 1"] {
-        machine.ask(line).expect("it is taken");
+fn the_recorder_is_the_users_again_after_commissioning() {
+    for (chosen, last) in [
+        (Chosen::only("forces").expect("a step"), "keep"),
+        (Chosen::response(), "response"),
+    ] {
+        let stage = &StageParameters::REFERENCE;
+        let mut machine = SimulatedMachine::told(stage, SettingsFlash::in_memory(), Told::Machine);
+        machine.ask("CCL 1 ADVANCED").expect("it is taken");
+        for line in ["SPA 1 0x16000201 2100 1 0x54500900 17", "DRC 2 Y 1"] {
+            machine.ask(line).expect("it is taken");
+        }
+        let recorder = |machine: &mut SimulatedMachine| {
+            ["SPA? 1 0x16000201", "SPA? 1 0x54500900", "DRC?"]
+                .map(|question| machine.ask(question).expect("it answers"))
+        };
+        let before = recorder(&mut machine);
+        let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
+        let done = ran.done.last().expect("a step");
+        assert_eq!((done.step.name, &done.failure), (last, &None));
+        assert_eq!(recorder(&mut machine), before);
+        if chosen.keeps() {
+            machine.ask("RPA").expect("it is taken");
+            assert_eq!(recorder(&mut machine), before);
+        }
     }
-    let recorder = |machine: &mut SimulatedMachine| {
-        ["SPA? 1 0x16000201", "SPA? 1 0x54500900", "DRC?"].map(|question| {
-            machine
-                .ask(question)
-                .expect("it answers")
-                .expect("an answer")
-        })
-    };
-    let before = recorder(&mut machine);
-    let chosen = Chosen::only("forces").expect("a step");
-    let ran = run(&mut machine, &chosen, &mut |_| ()).expect("it answers");
-    let last = ran.done.last().expect("a step");
-    assert_eq!((last.step.name, &last.failure), ("keep", &None));
-    assert_eq!(recorder(&mut machine), before);
-    machine.ask("RPA").expect("it is taken");
-    assert_eq!(recorder(&mut machine), before);
 }
 
 /// The settling window, encoder counts, that verification leaves a machine whose servos have this integral gain; as told, where it is none.

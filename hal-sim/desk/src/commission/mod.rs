@@ -205,19 +205,20 @@ pub fn run(
             break;
         }
     }
-    if let Some(in_force) = in_force {
-        if !failed {
-            bench.give_up()?;
+    if in_force.is_some() && !failed {
+        bench.give_up()?;
+    }
+    let as_before = bench.give_back_recorder().and_then(|()| match in_force {
+        Some(in_force) => bring_back(&mut |line| bench.answer(line), &in_force),
+        None => Ok(()),
+    });
+    if let Err(error @ RecordError::Refused { .. }) = as_before {
+        failed = true;
+        if let Some(last) = all.last_mut() {
+            not_as_before(last, &error);
         }
-        let brought = bring_back(&mut |line| bench.answer(line), &in_force);
-        if let Err(error @ RecordError::Refused { .. }) = brought {
-            failed = true;
-            if let Some(last) = all.last_mut() {
-                not_as_before(last, &error);
-            }
-        } else {
-            brought?;
-        }
+    } else {
+        as_before?;
     }
     let tunable = match failed {
         true => None,
