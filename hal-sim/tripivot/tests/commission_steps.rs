@@ -217,9 +217,8 @@ fn ms_with_more(
 #[test]
 fn gains_and_limits_are_for_what_the_platform_also_carries() {
     const MORE_KG: f64 = 5.0;
-    const MOST_MS_AT_WORK: f64 = 2.05;
-    // 2.05 and a little: 2 is aimed at there as well.
-    const MOST_MS_AT_RIM: f64 = 2.07;
+    // 2.02 and a little: 2 is aimed at there as well.
+    const MOST_MS_AT_RIM: f64 = 2.04;
     let mut stage = StageParameters::REFERENCE;
     stage.plant.imperfections = Imperfections::ALL;
     let flash = SettingsFlash::in_memory();
@@ -247,9 +246,7 @@ fn gains_and_limits_are_for_what_the_platform_also_carries() {
     println!(
         "Ms with {MORE_KG} kg more {one:.2?}, with gains for both {both:.2?}, at the rim {at_rim:.2?}; {accelerations:.0?}"
     );
-    assert!(one[0] > MOST_MS && both[0] < MOST_MS);
-    // What is sought is less, on a model. Gains that are not for warm windings have 2.11.
-    assert!(both[1] < MOST_MS_AT_WORK);
+    assert!(one[0] > MOST_MS && both.iter().all(|ms| *ms < MOST_MS));
     assert!(at_rim.iter().all(|ms| *ms < MOST_MS_AT_RIM));
     assert!(accelerations[1] < 0.53 * accelerations[0]);
     for weight in [-1.0, 21.0, f64::NAN] {
