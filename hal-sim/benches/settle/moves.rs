@@ -1,6 +1,7 @@
 //! Random moves over the whole disk and what is seen of them from outside: how soon the stage settles, and how quiet it is between them.
 
 use firmware::control::SubdivisionTable;
+use firmware::control::config::Config;
 use firmware::motion::{Constraints, Position, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
@@ -238,7 +239,7 @@ pub fn of(stage: &StageParameters, parameters: &Parameters) -> Moves {
     let (mut inside, mut told) = (Vec::new(), Vec::new());
     let (mut after_ms, mut by_mean_ms) = (Vec::new(), Vec::new());
     let window = parameters.window.counts + 0.5;
-    let mut mean = Mean::over((parameters.window.mean_s * parameters.limits.rate_hz) as usize);
+    let mut mean = Mean::over(Config::new(parameters).limits.mean_ticks);
     for number in 0..MOVES {
         let from = bench.last.setpoint;
         let to = random.target(&from);
