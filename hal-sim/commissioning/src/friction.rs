@@ -1,7 +1,9 @@
 //! Friction and motor constants of the drives, from turning at steady rates both ways.
 //!
-//! At a steady rate the torque of the motor is friction, `K i = Tc sign(w) + b w`, and the voltage is `R i + K w + d sign(w)`, d being what the
-//! dead time takes. So K is what is left of the volts for each rad/s when the resistance has had its part, which is little. An offset of
+//! At a steady rate the torque of the motor is friction, `K i = Tc sign(w) + b w`, and the voltage is `R i + K w + d s`, d being what the
+//! dead time takes and s the mean share of it that counts. That is the sign of the current where this is large all the time; what friction and
+//! gears make of it at a slow rate may be less, and more at a fast one: a share that is taken for whole is then taken for a motor constant.
+//! So K is what is left of the volts for each rad/s when dead time and resistance have had their parts. An offset of
 //! the current's sensor is the same both ways and falls out. What is found is all that rubs between a motor and the platform where it turns: brushes, gear, ring. With the platform in
 //! the middle the carriages stand still on their guides, and theirs is not in it; but while they do not slide they hold a torque between the
 //! rings, so that a drive carries a part of another's friction: [`mean`] of the three is right, one alone is off by that.
@@ -17,6 +19,15 @@ pub struct SteadyRate {
     pub current_a: f64,
     /// Of the voltage.
     pub volts: f64,
+    /// Of [`dead_time_share`].
+    pub dead_time_share: f64,
+}
+
+/// Share of a bridge's dead time that counts at a current, with its sign: less below a knee, where the current changes its sign within a
+/// period of the pulses.
+#[must_use]
+pub fn dead_time_share(current_a: f64, knee_a: f64) -> f64 {
+    (current_a / knee_a).clamp(-1.0, 1.0)
 }
 
 /// Friction of a drive, seen at its ring.
@@ -102,14 +113,22 @@ pub fn friction(steady: &[SteadyRate], resistance_ohm: f64) -> Result<Friction, 
     if !(most >= LEAST_RANGE * least) {
         return Err(FrictionError::TooNear);
     }
-    let (volts, ..) = fit(steady, |one| one.volts - resistance_ohm * one.current_a)
-        .ok_or(FrictionError::TooNear)?;
+    let (volts, ..) = fit(
+        steady,
+        |one| one.dead_time_share,
+        |one| one.volts - resistance_ohm * one.current_a,
+    )
+    .ok_or(FrictionError::TooNear)?;
     let motor_constant = volts.y;
     if !(motor_constant > 0.0) {
         return Err(FrictionError::AgainstTheVolts);
     }
-    let (numbers, deviations, left) =
-        fit(steady, |one| one.current_a * motor_constant).ok_or(FrictionError::TooNear)?;
+    let (numbers, deviations, left) = fit(
+        steady,
+        |one| one.rate_rad_s.signum(),
+        |one| one.current_a * motor_constant,
+    )
+    .ok_or(FrictionError::TooNear)?;
     let coulomb_n_m = numbers.x;
     if !(coulomb_n_m > 0.0) {
         return Err(FrictionError::Negative { coulomb_n_m });
@@ -146,13 +165,14 @@ impl Friction {
     }
 }
 
-/// Sign, rate and 1 to a value, by least squares; deviations and what is left.
+/// A sign, the rate and 1 to a value, by least squares; deviations and what is left.
 fn fit(
     steady: &[SteadyRate],
+    sign: impl Fn(&SteadyRate) -> f64,
     value: impl Fn(&SteadyRate) -> f64,
 ) -> Option<(Vector3<f64>, Vector3<f64>, f64)> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    let row = |one: &SteadyRate| Vector3::new(one.rate_rad_s.signum(), one.rate_rad_s, 1.0);
+    let row = |one: &SteadyRate| Vector3::new(sign(one), one.rate_rad_s, 1.0);
     for one in steady {
         normal += row(one) * row(one).transpose();
         right += row(one) * value(one);

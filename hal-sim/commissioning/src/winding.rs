@@ -5,6 +5,7 @@
 //! computed current is nearest to the measured one. Pulses of two sizes and both signs tell d from R. The ring hardly moves: K stays what
 //! it was thought to be unless the pulses say otherwise.
 
+use crate::friction::dead_time_share;
 use crate::least_squares::minimise;
 use crate::record::{Signals, Timing};
 use nalgebra::DVector;
@@ -221,8 +222,8 @@ fn currents(pulse: &Signals, timing: &Timing, numbers: &WindingGuess) -> Vec<f64
             let old = ((change_s - step as f64 * step_s) / step_s).clamp(0.0, 1.0);
             let volts = old * before + (1.0 - old) * now;
             let slope = |current: f64| {
-                let lost = numbers.dead_time_v.min(volts.abs())
-                    * (current / numbers.knee_a).clamp(-1.0, 1.0);
+                let lost =
+                    numbers.dead_time_v.min(volts.abs()) * dead_time_share(current, numbers.knee_a);
                 (volts - numbers.resistance_ohm * current - numbers.motor_constant * rate - lost)
                     / numbers.inductance_h
             };

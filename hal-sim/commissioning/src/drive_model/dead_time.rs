@@ -5,6 +5,7 @@
 //! and, as both oppose the current, the resistance too large (2 to 4 % with a row each fourth tick). The current itself is band-limited, by
 //! the winding. So it is computed between the rows first, and its sign taken there.
 
+use crate::friction::dead_time_share;
 use std::f64::consts::PI;
 
 /// Samples to a control period: harmonics up to this half the tick's rate are then where they belong.
@@ -31,7 +32,7 @@ pub(super) fn lost(current_a: &[f64], ticks_per_row: usize, knee_a: f64) -> Lost
             let between: f64 = (weights.iter().enumerate())
                 .map(|(k, weight)| weight * current_a[at(k)])
                 .sum();
-            shares[row * per_row + part] = (between / knee_a).clamp(-1.0, 1.0);
+            shares[row * per_row + part] = dead_time_share(between, knee_a);
         }
     }
     Lost { shares, per_row }

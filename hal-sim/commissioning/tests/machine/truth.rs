@@ -1,6 +1,6 @@
 //! What a machine is, from the simulator's own numbers and matrices, against what was found.
 
-use super::steady::all_rates;
+use super::steady::{KNEE_A, all_rates};
 use super::{Excited, Machine, PLAN, Plan, TIMING, WEAKER, excite};
 use commissioning::chain::Place;
 use commissioning::drive_model::{DriveModel, Guess, Known, Responses, drive_model};
@@ -39,7 +39,7 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
         found.motor_constant
     });
     let known = Known {
-        knee_a: 0.043,
+        knee_a: KNEE_A,
         motor_constants: Some(motor_constants),
         guess: Guess::STAGE,
         to_hz: 2_500.0,

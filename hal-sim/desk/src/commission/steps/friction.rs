@@ -5,11 +5,11 @@ use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
-use commissioning::friction::{MOST_RESIDUAL, SteadyRate, friction, mean};
+use commissioning::friction::{MOST_RESIDUAL, SteadyRate, dead_time_share, friction, mean};
 use std::f64::consts::TAU;
 
 /// Rates, rad/s, and how long each is kept before it is measured, s.
-const RATES_RAD_S: [f64; 6] = [0.5, 1.0, 3.0, -0.5, -1.0, -3.0];
+const RATES_RAD_S: [f64; 6] = [0.7, 1.4, 3.0, -0.7, -1.4, -3.0];
 const REACHED_S: f64 = 1.5;
 /// Rows of a record, about, which is of a whole turn of the platform, and how many of them there is room for.
 const ROWS: f64 = 2_000.0;
@@ -112,6 +112,7 @@ fn measure(bench: &mut Bench<'_>, rate: f64) -> Result<[SteadyRate; AXES], Commi
     }
     let record = bench.record_tables(&tables, rows, every as usize, None)?;
     let column = |at: usize| record.rows.iter().map(move |row| row[at]);
+    let knee_a = bench.parameter(id::of(id::DEAD_TIME_KNEE, 0))?;
     let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / rows as f64;
     let angles: Vec<f64> = column(1).collect();
     let seconds = (rows - 1) as f64 * every * bench.period_s;
@@ -120,5 +121,6 @@ fn measure(bench: &mut Bench<'_>, rate: f64) -> Result<[SteadyRate; AXES], Commi
         rate_rad_s,
         current_a: mean(&mut column(2 + AXES + pivot)),
         volts: mean(&mut column(0).zip(column(2 + pivot)).map(|(v, duty)| v * duty)),
+        dead_time_share: mean(&mut column(2 + AXES + pivot).map(|i| dead_time_share(i, knee_a))),
     }))
 }
