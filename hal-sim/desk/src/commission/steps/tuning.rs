@@ -29,7 +29,7 @@ const BORNE_COUNTS: f64 = 2.0 * USUAL_COUNTS;
 /// How often loops are measured with gains and with slower or faster ones.
 const MOST_TRIES: usize = 4;
 /// What their Ms is brought to, from which on it is enough; how gains have to go with it, and by how much at a time at most.
-const AIMED_MS: f64 = 1.9;
+const AIMED_MS: f64 = 1.95;
 const ENOUGH_MS: f64 = 1.8;
 const MS_POWER: f64 = 1.5;
 const LEAST_BY: f64 = 0.6;
