@@ -1,6 +1,7 @@
 //! `tripivot commission` on machines with something broken: refused at a step that names it, before anything has moved far.
 
-use desk::commission::{Chosen, Done, ZerosBy, run};
+use desk::commission::{Chosen, Done, Machine, Task, ZerosBy, run};
+use desk::record::RecordError;
 use hal_sim::front::{Host, Wiring};
 use hal_sim::machine::devices::{EncoderFault, SettingsFlash};
 use hal_sim::machine::unknown;
@@ -138,4 +139,51 @@ fn a_jig_that_has_been_forgotten_is_refused_before_a_servo_works_against_it() {
         }
     });
     is_refused(&all, "zeros", "the jig is in");
+}
+
+/// Another client stops every nudge that looks whether the jig is out.
+struct StoppedByAnother {
+    machine: SimulatedMachine,
+    comes_out: bool,
+}
+
+impl Machine for StoppedByAnother {
+    fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
+        let answer = self.machine.ask(line);
+        if self.comes_out && line.starts_with("EXC RAMP") {
+            assert!(
+                self.machine.ask("STP").is_err(),
+                "a stop says that it has stopped something"
+            );
+        }
+        answer
+    }
+
+    fn delay(&mut self, seconds: f64) -> Result<(), RecordError> {
+        self.machine.delay(seconds)
+    }
+
+    fn request(&mut self, task: Task) -> Result<(), RecordError> {
+        self.comes_out |= task == Task::TakeOutJig;
+        self.machine.request(task)
+    }
+
+    fn scale_periods(&self) -> Option<u32> {
+        self.machine.scale_periods()
+    }
+}
+
+#[test]
+fn a_nudge_that_another_client_stops_is_no_jig() {
+    let mut stopped = StoppedByAnother {
+        machine: SimulatedMachine::new(&unknown(1), SettingsFlash::in_memory()),
+        comes_out: false,
+    };
+    let ran = run(&mut stopped, &Chosen::all(ZerosBy::Jig), &mut |_| ());
+    let all = ran.unwrap_or_else(|error| panic!("{error}")).done;
+    is_refused(
+        &all,
+        "zeros",
+        "a nudge to see whether the jig is out has ended by",
+    );
 }

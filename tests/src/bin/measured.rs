@@ -7,7 +7,9 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use tests::measured::{Group, Page, SECTIONS, Section, path, plant_path, plant_text, prepare, run};
+use tests::measured::{
+    Group, Page, Section, all_sections, path, plant_path, plant_text, prepare, run,
+};
 
 const USAGE: &str = "measured [--only NAME]... [--missing] [--short] [--list] [--page]";
 
@@ -40,7 +42,7 @@ fn options() -> Result<Options, String> {
             "--page" => options.is_page = true,
             "--only" => {
                 let name = arguments.next().unwrap_or_default();
-                let section = SECTIONS.iter().find(|section| section.name == name);
+                let section = all_sections().find(|section| section.name == name);
                 let section =
                     section.ok_or(format!("\"{name}\" is no section; --list names them"))?;
                 options.only.push(section.name);
@@ -85,7 +87,7 @@ fn measure(root: &Path, options: &Options) -> std::io::Result<u32> {
     for error in errors {
         eprintln!("left out: {error}");
     }
-    let wanted: Vec<_> = (SECTIONS.iter())
+    let wanted: Vec<_> = all_sections()
         .filter(|section| options.wants(section, &page))
         .collect();
     if options.is_list {

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Group, Measured, SECTIONS, Section};
+use super::{Group, Measured, Section, all_sections};
 
 const HEAD: &str = "# Measured
 
 Written by `cargo run --release -p tests --bin measured`, which runs the commands below and takes the figures from what they
-print. What is run stands in `tests/src/measured/registry.rs`; edit that, not this. `--only NAME` runs one section again and
+print. What is run stands in `tests/src/measured/registry/`; edit that, not this. `--only NAME` runs one section again and
 leaves the others as they are, `--list` names them, `--short` takes shorter runs, `--missing` what has not been run yet, `--page`
 writes the page again and runs nothing.
 
@@ -89,7 +89,7 @@ impl Page {
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!("{HEAD}\n| section | name | figures | run |\n|---|---|---|---|\n");
-        for section in in_order() {
+        for section in all_sections() {
             let _ = writeln!(
                 text,
                 "| [{}](#{}) | `{}` | {} | {} |",
@@ -105,7 +105,7 @@ impl Page {
             if let Some(about) = group.about() {
                 let _ = writeln!(text, "\n{}", wrapped(about));
             }
-            for section in in_order().filter(|section| section.group == group) {
+            for section in all_sections().filter(|section| section.group == group) {
                 self.section(&mut text, section);
             }
         }
@@ -146,15 +146,6 @@ impl Page {
     }
 }
 
-/// The table in the page's order.
-fn in_order() -> impl Iterator<Item = &'static Section> {
-    Group::ALL.into_iter().flat_map(|group| {
-        SECTIONS
-            .iter()
-            .filter(move |section| section.group == group)
-    })
-}
-
 /// Titles of sections, and the lines under each.
 fn sections(text: &str) -> Vec<(&str, Vec<&str>)> {
     let mut sections: Vec<(&str, Vec<&str>)> = Vec::new();
@@ -175,7 +166,7 @@ fn measured(
     title: &str,
     lines: &[&str],
 ) -> Result<Option<(&'static Section, Measured)>, PageError> {
-    let section = (SECTIONS.iter().find(|section| section.title == title))
+    let section = (all_sections().find(|section| section.title == title))
         .ok_or_else(|| PageError::Surplus(title.to_owned()))?;
     let after = |prefix: &str| lines.iter().find_map(|line| line.strip_prefix(prefix));
     let incomplete = || PageError::Incomplete(title.to_owned());
