@@ -6,17 +6,16 @@ use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
 
-/// Share of the speed, and of that back over the whole turn, once nothing was in the way.
+/// Share of the speed.
 const SPEED: f64 = 0.1;
-const SPEED_BACK: f64 = 0.3;
-const MOVES: [&str; 5] = [
+const MOVES: [&str; 6] = [
     "MOV X 15 Y 15 W 0",
     "MOV X -15 Y 15 W 120",
     "MOV X -15 Y -15 W 240",
     "MOV X 15 Y -15 W 360",
     "MOV X 0 Y 0 W 360",
+    "MOV X 0 Y 0 W 0",
 ];
-const BACK: &str = "MOV X 0 Y 0 W 0";
 /// Longest of them, s.
 const LONGEST_S: f64 = 60.0;
 const MOST_ERROR_RAD: f64 = 1e-3;
@@ -44,9 +43,5 @@ pub(super) fn run(
         error_rad < MOST_ERROR_RAD,
         "something rubs or gives way, or the gains are far from this machine's",
     ));
-    if error_rad < MOST_ERROR_RAD {
-        let followed = bench.follow_slowly(SPEED_BACK, &[BACK], LONGEST_S);
-        unless_hunting(bench, followed)?;
-    }
     Ok(())
 }
