@@ -81,6 +81,11 @@ impl Control {
         state.ended.clone()
     }
 
+    /// Whether the run knows that it is to end.
+    pub fn knows(&self) -> bool {
+        self.state().knows
+    }
+
     /// What was said before the person was asked does not count.
     pub fn ask(&self) {
         self.state().is_done = false;

@@ -150,7 +150,13 @@ impl PageMachine {
 impl Machine for PageMachine {
     fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
         self.check_end()?;
-        self.send(line)
+        loop {
+            match self.send(line) {
+                // While the stage is brought to rest one more stop, or the one that ends the run and goes out after it was told, ends nothing.
+                Err(RecordError::Ended(_)) if self.control.knows() => {}
+                answer => return answer,
+            }
+        }
     }
 
     /// By looking at its clock: `DEL` would hold up the pages that share the line.
