@@ -151,10 +151,7 @@ impl Machine for StoppedByAnother {
     fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
         let answer = self.machine.ask(line);
         if self.comes_out && line.starts_with("EXC RAMP") {
-            assert!(
-                self.machine.ask("STP").is_err(),
-                "a stop says that it has stopped something"
-            );
+            self.machine.ask("STP")?;
         }
         answer
     }
