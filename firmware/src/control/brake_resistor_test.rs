@@ -42,8 +42,6 @@ const LEAST_COUNTS: i32 = 4;
 const TRIES: u8 = 3;
 /// Ticks that it takes: what a pin does is measured in the tick after.
 const TICKS: u32 = PARTS * PART_TICKS + 1;
-/// From one test to the next while the stage rests, s.
-pub const REST_PERIOD_S: f64 = 2.0;
 
 /// The smallest drop that is one, V.
 pub const LEAST_DROP_V: f64 = LEAST_COUNTS as f64 * SUPPLY_V_PER_COUNT;

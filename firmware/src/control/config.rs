@@ -1,6 +1,5 @@
 //! What the tick computes with, derived once from the parameters.
 
-use crate::control::brake_resistor_test::REST_PERIOD_S;
 use crate::control::encoder::EncoderConfig;
 use crate::control::guides::GuideConfig;
 use crate::control::held_position::PositionSteps;
@@ -17,6 +16,8 @@ use crate::parameters::Parameters;
 
 /// Share of the limits of a pivot's motion under which its setpoint hardly moves.
 const SLOW: f64 = 0.1;
+/// From one [test of the brake resistor](super::brake_resistor_test) to the next while the stage rests, s.
+const RESISTOR_TEST_PERIOD_S: f64 = 2.0;
 /// Supply that is too high, ADC counts.
 pub(super) const MAX_SUPPLY_COUNTS: u16 = (BUS.too_high_v / SUPPLY_V_PER_COUNT) as u16;
 /// Most ticks of the settling window's mean.
@@ -169,7 +170,7 @@ impl Config {
                 oscillation_memory: libm::exp(
                     -f64::from(INSPECTION_PERIOD_TICKS) * period_s / MEMORY_S,
                 ) as f32,
-                resistor_test_ticks: (REST_PERIOD_S * rate_hz) as u32,
+                resistor_test_ticks: (RESISTOR_TEST_PERIOD_S * rate_hz) as u32,
                 rate_hz: rate_hz as f32,
             },
             fault_stop: FaultStop::new(supervision.stop_s, rate_hz),

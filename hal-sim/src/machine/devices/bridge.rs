@@ -12,7 +12,7 @@ use std::rc::Rc;
 use embedded_hal::digital::{self, InputPin, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
 
-use super::protection::BridgeHeat;
+use super::bridge_heat::BridgeHeat;
 use crate::machine::plant::Drive;
 use firmware::drivers::power_stage::BRIDGE;
 

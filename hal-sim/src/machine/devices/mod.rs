@@ -5,7 +5,7 @@
 //! | `stage` | the whole stage behind the wires, and the timeline of a period |
 //! | `encoder`, `biss` | an absolute encoder, and the bits of its frame |
 //! | `bridge` | an H-bridge: pins in, voltage out |
-//! | `protection` | what a bridge does by itself: trips, heat, waking up |
+//! | `protection`, `bridge_heat` | what a bridge does by itself: trips, heat, waking up; how it becomes warm |
 //! | `bus` | what lies between supply and bridges |
 //! | `analog` | what the ADC reads |
 //! | `watchdog` | what starts the controller again |
@@ -15,6 +15,7 @@
 pub mod analog;
 pub mod biss;
 mod bridge;
+mod bridge_heat;
 mod bus;
 mod encoder;
 mod flash;
@@ -29,10 +30,11 @@ pub use bridge::{
     Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FINE_PWM, FaultPin, MAX_DUTY,
     PwmPin, SleepPin,
 };
+pub use bridge_heat::BridgeHeat;
 pub use bus::{BrakeResistorFault, Bus, BusParameters};
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use flash::{FlashError, SettingsFileError, SettingsFlash};
-pub use protection::{BridgeHeat, Protection};
+pub use protection::Protection;
 pub use stage::{Stage, StageParameters};
 pub use watchdog::{EARLY_WARNING_S, Reset, Watchdog};
 pub use wiring::WiringParameters;
