@@ -3,8 +3,8 @@
 //! At a steady rate the torque of the motor is friction, `K i = Tc sign(w) + b w`, and the voltage is `R i + K w + d s`, d being what the
 //! dead time takes and s the mean share of it that counts. That is the sign of the current where this is large all the time; what friction and
 //! gears make of it at a slow rate may be less, and more at a fast one: a share that is taken for whole is then taken for a motor constant.
-//! So K is what is left of the volts for each rad/s when dead time and resistance have had their parts. An offset of
-//! the current's sensor is the same both ways and falls out. What is found is all that rubs between a motor and the platform where it turns: brushes, gear, ring. With the platform in
+//! So K is what is left of the volts for each rad/s when dead time and resistance have had their parts: a [`MotorConstant`] goes on to say what
+//! it is as the resistance becomes better known. An offset of the current's sensor is the same both ways and falls out. What is found is all that rubs between a motor and the platform where it turns: brushes, gear, ring. With the platform in
 //! the middle the carriages stand still on their guides, and theirs is not in it; but while they do not slide they hold a torque between the
 //! rings, so that a drive carries a part of another's friction: [`mean`] of the three is right, one alone is off by that.
 
@@ -19,15 +19,39 @@ pub struct SteadyRate {
     pub current_a: f64,
     /// Of the voltage.
     pub volts: f64,
-    /// Of [`dead_time_share`].
+    /// Of the [share of the dead time](crate::dead_time::dead_time_share) that counts.
     pub dead_time_share: f64,
 }
 
-/// Share of a bridge's dead time that counts at a current, with its sign: less below a knee, where the current changes its sign within a
-/// period of the pulses.
-#[must_use]
-pub fn dead_time_share(current_a: f64, knee_a: f64) -> f64 {
-    (current_a / knee_a).clamp(-1.0, 1.0)
+/// Motor constant of a drive as steady rates tell it: what each rad/s takes of the volts, less what the resistance takes of that.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MotorConstant {
+    /// Volts for each rad/s of the ring, V s/rad.
+    volts: f64,
+    /// Current for each rad/s of the ring, A s/rad.
+    current: f64,
+}
+
+impl MotorConstant {
+    /// Known whatever the resistance is, V s/rad.
+    #[must_use]
+    pub const fn known(v_s_rad: f64) -> Self {
+        Self {
+            volts: v_s_rad,
+            current: 0.0,
+        }
+    }
+
+    /// With a winding of a resistance, V s/rad.
+    #[must_use]
+    pub fn with(&self, resistance_ohm: f64) -> f64 {
+        self.volts - resistance_ohm * self.current
+    }
+
+    /// Coefficients of the resistance and of itself in an equation, and what they make: `current R + K = volts`.
+    pub(crate) const fn equation(&self) -> ([f64; 2], f64) {
+        ([self.current, 1.0], self.volts)
+    }
 }
 
 /// Friction of a drive, seen at its ring.
@@ -35,6 +59,8 @@ pub fn dead_time_share(current_a: f64, knee_a: f64) -> f64 {
 pub struct Friction {
     /// Back-EMF for each rad/s of the ring, V s/rad: torque at the ring for each ampere, N m/A.
     pub motor_constant: f64,
+    /// The same for any resistance.
+    pub constant: MotorConstant,
     /// Coulomb friction.
     pub coulomb_n_m: f64,
     /// What grows with the rate.
@@ -113,13 +139,16 @@ pub fn friction(steady: &[SteadyRate], resistance_ohm: f64) -> Result<Friction, 
     if !(most >= LEAST_RANGE * least) {
         return Err(FrictionError::TooNear);
     }
-    let (volts, ..) = fit(
-        steady,
-        |one| one.dead_time_share,
-        |one| one.volts - resistance_ohm * one.current_a,
-    )
-    .ok_or(FrictionError::TooNear)?;
-    let motor_constant = volts.y;
+    let of = |value: fn(&SteadyRate) -> f64| {
+        fit(steady, |one| one.dead_time_share, value).ok_or(FrictionError::TooNear)
+    };
+    let (volts, ..) = of(|one| one.volts)?;
+    let (currents, ..) = of(|one| one.current_a)?;
+    let constant = MotorConstant {
+        volts: volts.y,
+        current: currents.y,
+    };
+    let motor_constant = constant.with(resistance_ohm);
     if !(motor_constant > 0.0) {
         return Err(FrictionError::AgainstTheVolts);
     }
@@ -141,10 +170,11 @@ pub fn friction(steady: &[SteadyRate], resistance_ohm: f64) -> Result<Friction, 
     }
     Ok(Friction {
         motor_constant,
+        constant,
         coulomb_n_m,
         viscous_n_m_s: numbers.y,
         offset_a: numbers.z / motor_constant,
-        break_away_v: volts.x + resistance_ohm * numbers.x / motor_constant,
+        break_away_v: volts.x + resistance_ohm * (numbers.x / motor_constant - currents.x),
         deviations: [deviations.x, deviations.y],
         residual,
     })

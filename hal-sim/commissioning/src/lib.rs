@@ -34,6 +34,7 @@
 
 pub mod chain;
 pub mod closed_loop;
+pub mod dead_time;
 pub mod drive_model;
 pub mod frequency_response;
 pub mod friction;

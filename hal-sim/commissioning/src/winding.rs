@@ -5,7 +5,7 @@
 //! computed current is nearest to the measured one. Pulses of two sizes and both signs tell d from R. The ring hardly moves: K stays what
 //! it was thought to be unless the pulses say otherwise.
 
-use crate::friction::dead_time_share;
+use crate::dead_time::dead_time_share;
 use crate::least_squares::minimise;
 use crate::record::{Signals, Timing};
 use nalgebra::DVector;

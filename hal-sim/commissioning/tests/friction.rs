@@ -83,6 +83,10 @@ fn friction_in_closed_form_is_found_again() {
     assert!((found.coulomb_n_m - 0.35).abs() < 1e-12 && (found.viscous_n_m_s - 0.06).abs() < 1e-12);
     // The offset of the sensor is in the volts of the resistance, both ways alike.
     assert!((found.offset_a - 0.02).abs() < 1e-12 && (found.motor_constant - 2.5).abs() < 1e-12);
+    // Told another resistance, it says what it would have with that one.
+    let other = friction(&steady(0.02, 0.0), 1.9).expect("friction");
+    assert!((found.constant.with(1.9) - other.motor_constant).abs() < 1e-12);
+    assert!(other.motor_constant > 2.502);
     assert!((found.break_away_v - (2.1 * 0.35 / 2.5 + 0.38)).abs() < 1e-12);
     assert!(found.residual < 1e-9);
     // Something that catches at one rate.

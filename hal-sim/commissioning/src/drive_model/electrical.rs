@@ -2,7 +2,7 @@
 //!
 //! At every bin of every period, excited or not, `U = R I + j w L I + j w K Phi + d F`: linear in resistance, inductance, motor constant
 //! and the voltage that the bridge's dead time takes. F is the spectrum of the current's sign, which the record gives (1 from the knee on,
-//! less in proportion below; [`super::dead_time`]). At excited bins F is like I, and d could not be told from R; what the dead time makes of a
+//! less in proportion below; [`crate::dead_time`]). At excited bins F is like I, and d could not be told from R; what the dead time makes of a
 //! current that crosses zero is in all the others.
 //!
 //! Only records in which the drive itself was excited are used. In the others its current is what friction and the other drives leave it, at most
@@ -15,9 +15,10 @@
 //! bins. That part is computed with the winding as found, and taken away.
 
 use super::DriveError;
-use super::dead_time::{Lost, lost};
 use crate::chain::Chain;
+use crate::dead_time::{Lost, lost};
 use crate::frequency_response::{Run, hold};
+use crate::friction::MotorConstant;
 use crate::record::{Signals, Timing};
 use crate::spectrum::spectrum;
 use nalgebra::{Complex, Matrix4, Vector4};
@@ -87,8 +88,8 @@ pub struct Equations {
 /// What is known of a drive besides.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Besides<'a> {
-    /// Its motor constant, from steady rates ([`crate::friction`]): then it stays what it is.
-    pub motor_constant: Option<f64>,
+    /// Its motor constant, from steady rates: then it is what these say with the resistance that is found.
+    pub motor_constant: Option<MotorConstant>,
     /// Inertia of the motor, transmission and motor constant, as far as they are known; without, the motor is taken to turn as its ring does.
     pub mechanics: Option<(&'a Chain, f64)>,
 }
@@ -222,7 +223,7 @@ fn images(hz: f64, timing: &Timing, [resistance_ohm, inductance_h]: [f64; 2]) ->
 
 fn solve_without_images(
     rows: &[Row],
-    constant: Option<f64>,
+    constant: Option<MotorConstant>,
     timing: &Timing,
     winding: [f64; 2],
 ) -> Found {
@@ -238,7 +239,11 @@ fn solve_without_images(
     solve_with(rows, constant, |k| images[k])
 }
 
-fn solve_with(rows: &[Row], constant: Option<f64>, image: impl Fn(usize) -> Complex<f64>) -> Found {
+fn solve_with(
+    rows: &[Row],
+    constant: Option<MotorConstant>,
+    image: impl Fn(usize) -> Complex<f64>,
+) -> Found {
     let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
     let (mut square, mut weights) = (0.0, 0.0);
     for (k, row) in rows.iter().enumerate() {
@@ -250,10 +255,11 @@ fn solve_with(rows: &[Row], constant: Option<f64>, image: impl Fn(usize) -> Comp
             }
         }
     }
-    if let Some(constant) = constant {
+    if let Some(([of_resistance, of_constant], volts)) = constant.map(|one| one.equation()) {
         let sure = SURE * normal[(2, 2)];
-        normal[(2, 2)] += sure;
-        right[2] += sure * constant;
+        let row = Vector4::new(of_resistance, 0.0, of_constant, 0.0);
+        normal += sure * row * row.transpose();
+        right += sure * volts * row;
     }
     // Each in its own size, so that the inverse is one of likes.
     let scale = normal.diagonal().map(|d: f64| 1.0 / d.sqrt());

@@ -3,10 +3,8 @@
 //! | file | idea |
 //! |---|---|
 //! | `electrical` | winding, motor constant and dead time of each drive, from what is recorded of it alone |
-//! | `dead_time` | what of it counts, from the current, between the rows too |
 //! | `mechanical` | inertias, springs and dampers, from the responses of the angles to the currents |
 
-mod dead_time;
 mod electrical;
 mod mechanical;
 
@@ -14,6 +12,7 @@ pub use electrical::{Besides, COPPER_1_K, Electrical, Equations, electrical};
 pub use mechanical::{Guess, Mechanical, NAMES, Responses, mechanical};
 
 use crate::frequency_response::Run;
+use crate::friction::MotorConstant;
 use crate::record::Timing;
 
 /// Electrical and mechanical numbers of the machine.
@@ -30,8 +29,8 @@ pub struct DriveModel {
 pub struct Known {
     /// Current from which a bridge's whole dead time counts, A.
     pub knee_a: f64,
-    /// Motor constants from steady rates ([`crate::friction`]), V s/rad: better than what small motions say of them.
-    pub motor_constants: Option<[f64; 3]>,
+    /// Motor constants from steady rates: better than what small motions say of them.
+    pub motor_constants: Option<[MotorConstant; 3]>,
     /// What the machine may be.
     pub guess: Guess,
     /// Lines up to here are followed, Hz.

@@ -1,7 +1,8 @@
 //! Steady rates both ways.
 
 use super::{Machine, TIMING, Want};
-use commissioning::friction::{SteadyRate, dead_time_share};
+use commissioning::dead_time::dead_time_share;
+use commissioning::friction::SteadyRate;
 use commissioning::record::Record;
 use std::f64::consts::TAU;
 

@@ -36,7 +36,7 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
             ROUGH_OHM * warm * parameters.plant.resistance_ohm,
         )
         .expect("there is friction");
-        found.motor_constant
+        found.constant
     });
     let known = Known {
         knee_a: KNEE_A,

@@ -6,6 +6,7 @@ use super::measured_loop::MeasuredLoop;
 use super::sines::Excited;
 use crate::record::RecordError;
 use commissioning::drive_model::DriveModel;
+use commissioning::friction::MotorConstant;
 use commissioning::platform::Carriages;
 
 /// What the steps have found; each uses what those before it did.
@@ -25,8 +26,8 @@ pub(super) struct Known {
     pub bridges: [usize; AXES],
     /// Windings of the pivots' motors: ohm, H.
     pub windings: [[f64; 2]; AXES],
-    /// Back-EMF of the pivots' motors for each rad/s of their rings, V s/rad.
-    pub motor_constants: [f64; AXES],
+    /// Motor constants of the pivots' motors, at their rings.
+    pub motor_constants: [MotorConstant; AXES],
     /// Whether drives are known from before, and only the load is another.
     pub is_loaded_anew: bool,
     /// What may stand on the platform besides what is on it, at most, kg.
@@ -42,6 +43,12 @@ pub(super) struct Known {
 }
 
 impl Known {
+    /// Torque at the ring for each ampere of a pivot's motor, N m/A.
+    pub(super) fn motor_constant(&self, pivot: usize) -> f64 {
+        let [resistance_ohm, _] = self.windings[pivot];
+        self.motor_constants[pivot].with(resistance_ohm)
+    }
+
     /// What a controller has been told by an earlier commissioning.
     pub(super) fn of_controller(bench: &mut Bench<'_>) -> Result<Self, RecordError> {
         let mut known = Self {
@@ -60,8 +67,10 @@ impl Known {
                 bench.parameter(id::of(id::RESISTANCE, pivot))?,
                 bench.parameter(id::of(id::INDUCTANCE, pivot))?,
             ];
-            known.motor_constants[pivot] = bench.parameter(id::of(id::TORQUE_CONSTANT, pivot))?
-                * bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
+            known.motor_constants[pivot] = MotorConstant::known(
+                bench.parameter(id::of(id::TORQUE_CONSTANT, pivot))?
+                    * bench.parameter(id::of(id::GEAR_RATIO, pivot))?,
+            );
         }
         Ok(known)
     }

@@ -4,7 +4,6 @@
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
-use crate::commission::id::AXES;
 use crate::commission::known::Known;
 use commissioning::platform::{Evaluation, Tour};
 use commissioning::zeros::zero_errors;
@@ -56,7 +55,7 @@ pub(super) fn run(
     found: &mut Found,
 ) -> Result<(), CommissionError> {
     look_slowly(bench)?;
-    let tours = tours(bench, &known.motor_constants)?;
+    let tours = tours(bench, known)?;
     let how = Evaluation {
         track_radius_m: 1e-3 * bench.parameter(id::TRACK_RADIUS)?,
         smoothing_s: SMOOTHING_S,
@@ -108,10 +107,7 @@ pub(super) fn lines(round: usize) -> impl Iterator<Item = String> {
 }
 
 /// All moves, recorded.
-fn tours(
-    bench: &mut Bench<'_>,
-    motor_constants: &[f64; AXES],
-) -> Result<Vec<Tour>, CommissionError> {
+fn tours(bench: &mut Bench<'_>, known: &Known) -> Result<Vec<Tour>, CommissionError> {
     bench.reserve(ROWS)?;
     let mut tours = Vec::new();
     for line in (0..ROUNDS).flat_map(lines) {
@@ -119,7 +115,9 @@ fn tours(
         bench.stay()?;
         let torque_n_m = std::array::from_fn(|pivot| {
             let current = signals[pivot].current_a.iter();
-            current.map(|one| motor_constants[pivot] * one).collect()
+            current
+                .map(|one| known.motor_constant(pivot) * one)
+                .collect()
         });
         tours.push(Tour {
             step_s: bench.period_s * EVERY as f64,

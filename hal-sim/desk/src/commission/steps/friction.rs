@@ -5,7 +5,8 @@ use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
-use commissioning::friction::{MOST_RESIDUAL, SteadyRate, dead_time_share, friction, mean};
+use commissioning::dead_time::dead_time_share;
+use commissioning::friction::{MOST_RESIDUAL, SteadyRate, friction, mean};
 use std::f64::consts::TAU;
 
 /// Rates, rad/s, and how long each is kept before it is measured, s.
@@ -57,7 +58,7 @@ pub(super) fn run(
             (id::of(id::COULOMB, pivot), coulomb),
             (id::of(id::VISCOUS, pivot), viscous.max(0.0)),
         ])?;
-        known.motor_constants[pivot] = one.motor_constant;
+        known.motor_constants[pivot] = one.constant;
         found.number(
             format!("motor of pivot {}", pivot + 1),
             one.motor_constant,

@@ -131,7 +131,7 @@ fn drive(bench: &mut Bench<'_>, known: &Known, pivot: usize) -> Result<gear::Kno
     let mut value = |first: u32| bench.parameter(id::of(first, pivot));
     Ok(gear::Known {
         ratio: value(id::GEAR_RATIO)?,
-        motor_constant: known.motor_constants[pivot],
+        motor_constant: known.motor_constant(pivot),
         motor_inertia_kg_m2: value(id::MOTOR_INERTIA)?,
     })
 }

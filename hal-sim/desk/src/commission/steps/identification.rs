@@ -14,12 +14,13 @@ use commissioning::drive_model::{
     DriveError, DriveModel, Guess, Known as Before, Mechanical, Responses, drive_model,
 };
 use commissioning::frequency_response::Line;
+use commissioning::friction::MotorConstant;
 use commissioning::record::Timing;
 use commissioning::tuning::IDENTIFIED_LEARNING;
 
 /// Sets of lines in the middle, and periods of each; fewer where the drives are known and only the load is another.
-const IN_THE_MIDDLE: (u32, usize) = (3, 3);
-const SHORTER: (u32, usize) = (2, 2);
+const OF_DRIVES: (u32, usize) = (3, 3);
+const OF_LOAD: (u32, usize) = (2, 2);
 const SETS_OF_WEAKER: u32 = 2;
 const SETS_FAR_OUT: u32 = 2;
 /// Lines that the model follows, Hz.
@@ -77,18 +78,19 @@ fn identify(
     found: &mut Found,
 ) -> Result<Identified, CommissionError> {
     let fitting = Fitting::new(bench, known)?;
-    let how_often = if known.is_loaded_anew {
-        SHORTER
+    let (sets, periods) = if known.is_loaded_anew {
+        OF_LOAD
     } else {
-        IN_THE_MIDDLE
+        OF_DRIVES
     };
-    let excited = in_the_middle(bench, PEAK_V, how_often)?;
-    let left = |model: Result<DriveModel, DriveError>| {
-        model.map_or(f64::INFINITY, |model| model.mechanical.residual)
+    let in_the_middle = |bench: &mut Bench<'_>, peak_v: f64| {
+        excite(bench, &CENTRE, (sets, peak_v), Recorded::Drives { periods })
     };
-    if left(fitting.model(&excited, &[], &[])) < MOST_LEFT {
+    let excited = in_the_middle(bench, PEAK_V)?;
+    let fits = |model: &DriveModel| model.mechanical.residual < MOST_LEFT;
+    if fitting.model(&excited, &[], &[]).as_ref().is_ok_and(fits) {
         let identified = fitting.complete(bench, excited)?;
-        if left(identified.model.clone()) < MOST_LEFT {
+        if identified.model.as_ref().is_ok_and(fits) {
             return Ok(identified);
         }
     }
@@ -96,16 +98,8 @@ fn identify(
         "measured once more, more gently",
         format!("with {GENTLE_V} V; {PEAK_V} V may have lifted the teeth of the gears where they resonate"),
     ));
-    let excited = in_the_middle(bench, GENTLE_V, how_often)?;
+    let excited = in_the_middle(bench, GENTLE_V)?;
     fitting.complete(bench, excited)
-}
-
-fn in_the_middle(
-    bench: &mut Bench<'_>,
-    peak_v: f64,
-    (sets, periods): (u32, usize),
-) -> Result<Excited, CommissionError> {
-    excite(bench, &CENTRE, (sets, peak_v), Recorded::Drives { periods })
 }
 
 /// What a model is found with besides what is recorded.
@@ -229,7 +223,13 @@ fn tell_drives(
             "V s^2/rad",
         );
         known.windings[pivot] = [ohm, henry];
+        known.motor_constants[pivot] = MotorConstant::known(drive.motor_constant);
+        let gear = bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
         bench.set(&[
+            (
+                id::of(id::TORQUE_CONSTANT, pivot),
+                drive.motor_constant / gear,
+            ),
             (id::of(id::RESISTANCE, pivot), ohm),
             (id::of(id::INDUCTANCE, pivot), henry),
         ])?;

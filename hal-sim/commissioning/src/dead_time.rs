@@ -1,11 +1,10 @@
-//! What a bridge's dead time takes, as a signal: the sign of the current, which a record gives.
+//! What of a bridge's dead time counts: the sign of the current, at one current and as a signal, which a record gives.
 //!
 //! A sign is no band-limited signal: of a current that crosses zero every millisecond it has harmonics far beyond what rows at some kilohertz hold.
 //! The sign of the rows alone has these folded back on the lines, so that it is not what the bridge took: the dead time then comes out too small
 //! and, as both oppose the current, the resistance too large (2 to 4 % with a row each fourth tick). The current itself is band-limited, by
 //! the winding. So it is computed between the rows first, and its sign taken there.
 
-use crate::friction::dead_time_share;
 use std::f64::consts::PI;
 
 /// Samples to a control period: harmonics up to this half the tick's rate are then where they belong.
@@ -13,15 +12,22 @@ const SAMPLES_PER_TICK: usize = 2;
 /// Rows on either side of a sample that it is computed from: a sinc in a sinc's window (Lanczos) passes nine tenths of half the rows' rate.
 const ROWS: usize = 16;
 
-/// Share of the dead time that counts, -1 to 1, at samples between rows.
-pub(super) struct Lost {
+/// Share of a bridge's dead time that counts at a current, with its sign: less below a knee, where the current changes its sign within a
+/// period of the pulses.
+#[must_use]
+pub fn dead_time_share(current_a: f64, knee_a: f64) -> f64 {
+    (current_a / knee_a).clamp(-1.0, 1.0)
+}
+
+/// The same at samples between rows.
+pub(crate) struct Lost {
     pub shares: Vec<f64>,
     /// Samples a row.
     pub per_row: usize,
 }
 
 /// From the current at each row. `knee_a`: current from which the whole dead time counts; below, less in proportion.
-pub(super) fn lost(current_a: &[f64], ticks_per_row: usize, knee_a: f64) -> Lost {
+pub(crate) fn lost(current_a: &[f64], ticks_per_row: usize, knee_a: f64) -> Lost {
     let per_row = SAMPLES_PER_TICK * ticks_per_row;
     let mut shares = vec![0.0; per_row * current_a.len()];
     for part in 0..per_row {
