@@ -1,7 +1,7 @@
 //! What the tick computes with, derived once from the parameters.
 
 use crate::control::encoder::EncoderConfig;
-use crate::control::guides::GuideConfig;
+use crate::control::guides::config::GuideConfig;
 use crate::control::held_position::PositionSteps;
 use crate::control::inspection::INSPECTION_PERIOD_TICKS;
 use crate::control::oscillation::MEMORY_S;

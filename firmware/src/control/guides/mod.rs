@@ -9,10 +9,9 @@
 //! pivot leads by as much: `N / (k R c)`, c the cosine of its angle to the guide. A mass on a spring whose foot moves by
 //! `x + m x'' / k` moves by x: it does not ring either.
 
-mod config;
+pub mod config;
 
-pub use config::GuideConfig;
-
+use self::config::GuideConfig;
 use crate::control::inspection::LOOK_TICKS;
 use crate::control::pivot_setpoints::PivotSetpoints;
 use crate::control::servo::{Presliding, friction_torques};
