@@ -24,11 +24,9 @@
 //! deviations from nothing, and three and a half under the 20 mohm. It has three tries, the first good one counts: a resistor that works is
 //! refused once in 10^10 times, one that does not is passed once in 10^6.
 
-use super::config::SupervisionConfig;
-use super::inspection::INSPECTION_PERIOD_TICKS;
-use super::state::State;
-use super::units::SUPPLY_V_PER_COUNT;
-use crate::fault::FaultKind;
+mod run;
+
+use crate::control::units::SUPPLY_V_PER_COUNT;
 
 /// Ticks of a part of the test, and those of them that do not count.
 const PART_TICKS: u32 = 8;
@@ -48,7 +46,7 @@ pub const LEAST_DROP_V: f64 = LEAST_COUNTS as f64 * SUPPLY_V_PER_COUNT;
 
 /// How far it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct BrakeResistorTest {
+pub(in crate::control) struct BrakeResistorTest {
     ticks_left: u8,
     /// For how long the stage has rested under its servo since the last one, ticks.
     rested_ticks: u32,
@@ -74,18 +72,18 @@ impl BrakeResistorTest {
     }
 
     /// Something has come in between.
-    pub(super) fn stop(&mut self) {
+    pub(in crate::control) fn stop(&mut self) {
         self.ticks_left = 0;
     }
 
     #[inline]
-    pub(super) const fn is_under_way(&self) -> bool {
+    pub(in crate::control) const fn is_under_way(&self) -> bool {
         self.ticks_left != 0
     }
 
     /// What the last one has found, V.
     #[inline]
-    pub(super) const fn drop_v(&self) -> Option<f32> {
+    pub(in crate::control) const fn drop_v(&self) -> Option<f32> {
         self.drop_v
     }
 
@@ -108,94 +106,6 @@ const fn weight(tick: u32) -> i32 {
         1 | 3 => -4,
         2 => 6,
         _ => 0,
-    }
-}
-
-impl SupervisionConfig {
-    /// Ticks from when the bridges are woken to the first duty: they wake up, and the brake resistor is tested.
-    #[inline]
-    pub(super) fn ticks_until_driven(&self) -> u32 {
-        self.wake_ticks().max(TICKS)
-    }
-}
-
-impl State {
-    /// Begins with the bridges' waking up; the leads are tested where the servo goes on.
-    pub(super) fn wake_bridges(&mut self, limits: &SupervisionConfig) {
-        self.waking_ticks = limits.ticks_until_driven();
-        self.brake_resistor.test.start(self.supply);
-        if self.servo_on() {
-            self.lead_test.start();
-        }
-    }
-
-    /// A test every now and then while the stage is held; to be asked every [`INSPECTION_PERIOD_TICKS`].
-    #[cold]
-    pub(super) fn test_brake_resistor_at_rest(&mut self, limits: &SupervisionConfig) {
-        let rests = self.servo_only_holds();
-        let supply = self.supply;
-        let test = &mut self.brake_resistor.test;
-        test.rested_ticks = if rests {
-            test.rested_ticks + INSPECTION_PERIOD_TICKS
-        } else {
-            0
-        };
-        if test.rested_ticks >= limits.resistor_test_ticks {
-            test.start(supply);
-        }
-    }
-
-    /// A motion begins: the next test comes so long after its end.
-    #[inline]
-    pub(super) fn put_off_brake_resistor_test(&mut self) {
-        self.brake_resistor.test.rested_ticks = 0;
-    }
-
-    /// Whether the servo does nothing but hold the stage.
-    fn servo_only_holds(&self) -> bool {
-        self.setpoint_rests() && !self.is_waking() && self.excitation.request().is_none()
-    }
-
-    /// A tick of the test; whether the resistor is to be on. At its end a fault, or another try.
-    #[cold]
-    pub(super) fn test_brake_resistor(&mut self, supply_counts: u16) -> bool {
-        if self.waking_ticks == 0 && !self.servo_only_holds() {
-            self.brake_resistor.test.stop();
-            return false;
-        }
-        let is_taken = self.brake_resistor.is_taken();
-        let test = &mut self.brake_resistor.test;
-        test.is_void |= is_taken;
-        if self.waking_ticks != 0 {
-            // What the first duties are scaled by is the supply without the resistor.
-            self.supply = test.supply;
-        }
-        let is_pulsed = test.take(TICKS - u32::from(test.ticks_left), supply_counts);
-        test.ticks_left -= 1;
-        if test.ticks_left == 0 && !test.is_void {
-            self.judge_brake_resistor();
-        }
-        is_pulsed
-    }
-
-    fn judge_brake_resistor(&mut self) {
-        let test = &mut self.brake_resistor.test;
-        let sum = core::mem::take(&mut test.sum);
-        let drop_v = sum as f32 * (SUPPLY_V_PER_COUNT / SUM_OF_A_COUNT as f64) as f32;
-        test.drop_v = Some(drop_v);
-        if sum >= LEAST_COUNTS * SUM_OF_A_COUNT {
-            return;
-        }
-        test.tries += 1;
-        if test.tries < TRIES {
-            test.ticks_left = TICKS as u8;
-            if self.waking_ticks != 0 {
-                self.waking_ticks += TICKS;
-            }
-        } else {
-            let least_v = LEAST_DROP_V as f32;
-            self.raise_fault(FaultKind::BrakeResistorDead, None, drop_v, least_v);
-        }
     }
 }
 

@@ -16,10 +16,10 @@
 //!
 //! Not while the stage is held: what is large enough to be seen moves the platform by more than it may be off.
 
-use super::config::Config;
-use super::servo::{PivotServoConfig, compensate_dead_time};
-use super::state::State;
-use super::units::UNITS_PER_RAD;
+mod run;
+
+use crate::control::servo::{PivotServoConfig, compensate_dead_time};
+use crate::control::units::UNITS_PER_RAD;
 use crate::drivers::bridge::Duty;
 use crate::number;
 
@@ -39,7 +39,7 @@ const TURNED: u32 = (0.2e-3 * UNITS_PER_RAD) as u32;
 
 /// How far it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct LeadTest {
+pub(in crate::control) struct LeadTest {
     ticks_left: u8,
     motors: [Motor; 3],
 }
@@ -55,7 +55,7 @@ struct Motor {
 
 impl LeadTest {
     /// Begins with the next tick that could drive.
-    pub(super) fn start(&mut self) {
+    pub(in crate::control) fn start(&mut self) {
         *self = Self {
             ticks_left: TICKS,
             ..Self::default()
@@ -63,12 +63,12 @@ impl LeadTest {
     }
 
     /// A fault has come in between.
-    pub(super) fn stop(&mut self) {
+    pub(in crate::control) fn stop(&mut self) {
         self.ticks_left = 0;
     }
 
     #[inline]
-    pub(super) const fn is_under_way(&self) -> bool {
+    pub(in crate::control) const fn is_under_way(&self) -> bool {
         self.ticks_left != 0
     }
 }
@@ -100,53 +100,5 @@ impl Motor {
         self.model += (volts * config.knee_currents_per_volt - self.model) * config.current_step;
         let counts = compensate_dead_time(volts * counts_per_volt, sign, config.dead_time_counts);
         Duty(number::round_ties_even(counts).0 as i16)
-    }
-}
-
-impl State {
-    /// A tick of the test: its duties. A fault comes of it as soon as it is seen.
-    #[cold]
-    pub(super) fn test_leads(
-        &mut self,
-        config: &Config,
-        errors: &[i32; 3],
-        current_counts: &[i16; 3],
-    ) -> [Duty; 3] {
-        let tick = TICKS - self.lead_test.ticks_left;
-        self.lead_test.ticks_left -= 1;
-        let sign = match tick / PART_TICKS {
-            0 => 1.0,
-            1 => -1.0,
-            _ => 0.0,
-        };
-        let counts_per_volt = config.servo.counts_per_volt(self.supply);
-        let unexplained = f32::from(config.limits.unexplained_current_counts);
-        // What a part has driven is measured in the tick after.
-        let is_measured = tick == PART_TICKS || tick == 2 * PART_TICKS;
-        let mut duty = [Duty(0); 3];
-        for (i, duty) in duty.iter_mut().enumerate() {
-            let (Some(motor), Some(config), Some(&counts), Some(error)) = (
-                self.lead_test.motors.get_mut(i),
-                config.servo.pivots.get(i),
-                current_counts.get(i),
-                errors.get(i),
-            ) else {
-                continue;
-            };
-            let knees_per_count = config.knee_currents_per_count;
-            let current = f32::from(counts) * knees_per_count;
-            if tick == 0 {
-                motor.before = current;
-            }
-            let is_told = is_measured && error.unsigned_abs() < TURNED;
-            let unexplained = unexplained * knees_per_count;
-            if is_told && let Some(knees) = motor.missing(current, unexplained) {
-                let [missing, limit] = knees.map(|it| it / knees_per_count);
-                self.fault_unexplained_current(i, missing, limit);
-                break;
-            }
-            *duty = motor.step(config, sign, counts_per_volt);
-        }
-        duty
     }
 }
