@@ -9,8 +9,7 @@ use commissioning::drive_model::Electrical;
 use commissioning::tuning::{
     Gains, Limits, MOST_MS, Margins, PLACES, Plant, SEARCHED, Sought, tune,
 };
-use hal_sim::rig::loop_model;
-use machine::truth::{identify, spread};
+use machine::truth::{as_warm, identify, spread};
 use machine::{PLAN, TIMING, unknown};
 use parallel::{cores, of_all};
 
@@ -46,11 +45,7 @@ fn sought(
 fn row(seed: u64) -> [f64; 4] {
     let parameters = unknown(seed);
     let identified = identify(&parameters, &PLAN);
-    let (chain, mut electrical) = loop_model(&parameters);
-    // As warm as they were then.
-    for (drive, warmer_k) in electrical.iter_mut().zip(identified.excited.warmer_k) {
-        drive.resistance_ohm *= 1.0 + parameters.plant.winding.resistance_per_k * warmer_k;
-    }
+    let (chain, electrical) = as_warm(&parameters, &identified.excited);
     let truth = |places: &[[f64; 2]]| {
         let mut plants = Plant::at_places(&electrical, &chain, places, &TIMING);
         // Volts are those of the controller's meter.

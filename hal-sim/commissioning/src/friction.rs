@@ -57,10 +57,8 @@ impl MotorConstant {
 /// Friction of a drive, seen at its ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
-    /// Back-EMF for each rad/s of the ring, V s/rad: torque at the ring for each ampere, N m/A.
-    pub motor_constant: f64,
-    /// The same for any resistance.
-    pub constant: MotorConstant,
+    /// Torque at the ring for each ampere as well.
+    pub motor_constant: MotorConstant,
     /// Coulomb friction.
     pub coulomb_n_m: f64,
     /// What grows with the rate.
@@ -144,18 +142,18 @@ pub fn friction(steady: &[SteadyRate], resistance_ohm: f64) -> Result<Friction, 
     };
     let (volts, ..) = of(|one| one.volts)?;
     let (currents, ..) = of(|one| one.current_a)?;
-    let constant = MotorConstant {
+    let motor_constant = MotorConstant {
         volts: volts.y,
         current: currents.y,
     };
-    let motor_constant = constant.with(resistance_ohm);
-    if !(motor_constant > 0.0) {
+    let torque_n_m_a = motor_constant.with(resistance_ohm);
+    if !(torque_n_m_a > 0.0) {
         return Err(FrictionError::AgainstTheVolts);
     }
     let (numbers, deviations, left) = fit(
         steady,
         |one| one.rate_rad_s.signum(),
-        |one| one.current_a * motor_constant,
+        |one| one.current_a * torque_n_m_a,
     )
     .ok_or(FrictionError::TooNear)?;
     let coulomb_n_m = numbers.x;
@@ -170,11 +168,10 @@ pub fn friction(steady: &[SteadyRate], resistance_ohm: f64) -> Result<Friction, 
     }
     Ok(Friction {
         motor_constant,
-        constant,
         coulomb_n_m,
         viscous_n_m_s: numbers.y,
-        offset_a: numbers.z / motor_constant,
-        break_away_v: volts.x + resistance_ohm * (numbers.x / motor_constant - currents.x),
+        offset_a: numbers.z / torque_n_m_a,
+        break_away_v: volts.x + resistance_ohm * (numbers.x / torque_n_m_a - currents.x),
         deviations: [deviations.x, deviations.y],
         residual,
     })

@@ -8,6 +8,7 @@
 //! | [`mod@winding`] | resistance and inductance from pulses at rest; opens, shorts, polarity |
 //! | [`mod@frequency_response`] | responses of all pivots to all drives, in open or closed loop, with their deviations |
 //! | [`mod@friction`] | friction and motor constants from steady rates both ways |
+//! | [`dead_time`] | what of a bridge's dead time counts, at a current and in a record |
 //! | [`mod@gear`] | cyclic errors of the gears, from steady rates both ways |
 //! | [`mod@subdivision`] | errors of the encoders within the periods of their scales, from a steady rate |
 //! | [`mod@drive_model`] | windings, inertias, springs and dampers from the responses |

@@ -26,7 +26,8 @@ fn friction_of_unknown_machines() {
                 * (1.0 + 0.0039 * machine.stage.plant.windings_warmer_k()[drive]);
             let found = friction(of_drive, ohm).expect("friction");
             off_constant.push(
-                (found.motor_constant / (constant * parameters.analog.supply_gain) - 1.0).abs(),
+                (found.motor_constant.with(ohm) / (constant * parameters.analog.supply_gain) - 1.0)
+                    .abs(),
             );
             // As the controller's meters have it.
             meters[drive] = parameters.analog.current_gain[drive] * parameters.analog.supply_gain;
@@ -82,11 +83,14 @@ fn friction_in_closed_form_is_found_again() {
     let found = friction(&steady(0.02, 0.0), 2.1).expect("friction");
     assert!((found.coulomb_n_m - 0.35).abs() < 1e-12 && (found.viscous_n_m_s - 0.06).abs() < 1e-12);
     // The offset of the sensor is in the volts of the resistance, both ways alike.
-    assert!((found.offset_a - 0.02).abs() < 1e-12 && (found.motor_constant - 2.5).abs() < 1e-12);
-    // Told another resistance, it says what it would have with that one.
+    assert!(
+        (found.offset_a - 0.02).abs() < 1e-12
+            && (found.motor_constant.with(2.1) - 2.5).abs() < 1e-12
+    );
+    // Whatever resistance was thought of, it says what it is with another one: of the volts a rad/s takes what 0.0115 A take on 0.2 ohm.
     let other = friction(&steady(0.02, 0.0), 1.9).expect("friction");
-    assert!((found.constant.with(1.9) - other.motor_constant).abs() < 1e-12);
-    assert!(other.motor_constant > 2.502);
+    assert_eq!(other.motor_constant, found.motor_constant);
+    assert!((found.motor_constant.with(1.9) - 2.502_302_7).abs() < 1e-7);
     assert!((found.break_away_v - (2.1 * 0.35 / 2.5 + 0.38)).abs() < 1e-12);
     assert!(found.residual < 1e-9);
     // Something that catches at one rate.

@@ -57,17 +57,21 @@ fn a_motor_constant_is_that_of_the_resistance_that_is_found() {
     let runs: Vec<Run> = excited.runs.into_iter().map(thinned).collect();
     let equations = Equations::new(&runs, &TIMING, 0, KNEE_A).expect("records");
     let besides = Besides {
-        motor_constant: Some(before.constant),
+        motor_constant: before.motor_constant,
         mechanics: None,
     };
     let found = electrical(&equations, &TIMING, &besides).expect("a winding");
-    let off = |constant: f64| 100.0 * (constant / before.constant.with(found.resistance_ohm) - 1.0);
+    let off =
+        |constant: f64| 100.0 * (constant / before.motor_constant.with(found.resistance_ohm) - 1.0);
     println!(
         "found {:+.4} %, before {:+.4} %",
         off(found.motor_constant),
-        off(before.motor_constant)
+        off(before.motor_constant.with(PULSES_OHM * ohm))
     );
-    assert!(off(found.motor_constant).abs() < 1e-3 && off(before.motor_constant).abs() > 0.02);
+    assert!(
+        off(found.motor_constant).abs() < 1e-3
+            && off(before.motor_constant.with(PULSES_OHM * ohm)).abs() > 0.02
+    );
 }
 
 /// The dead time takes of the volts by the sign of the current. What of it is not seen is taken for resistance: with the sign at the rows alone, or
@@ -88,9 +92,9 @@ fn the_dead_time_is_not_taken_for_resistance() {
         for pivot in 0..3 {
             let equations = Equations::new(&runs, &TIMING, pivot, KNEE_A).expect("records");
             let besides = Besides {
-                motor_constant: Some(MotorConstant::known(
+                motor_constant: MotorConstant::known(
                     plant.ring_torque_constant_n_m_a() * analog.supply_gain,
-                )),
+                ),
                 mechanics: None,
             };
             let found = electrical(&equations, &TIMING, &besides).expect("a winding");

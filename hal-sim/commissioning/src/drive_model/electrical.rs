@@ -89,7 +89,7 @@ pub struct Equations {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Besides<'a> {
     /// Its motor constant, from steady rates: then it is what these say with the resistance that is found.
-    pub motor_constant: Option<MotorConstant>,
+    pub motor_constant: MotorConstant,
     /// Inertia of the motor, transmission and motor constant, as far as they are known; without, the motor is taken to turn as its ring does.
     pub mechanics: Option<(&'a Chain, f64)>,
 }
@@ -223,7 +223,7 @@ fn images(hz: f64, timing: &Timing, [resistance_ohm, inductance_h]: [f64; 2]) ->
 
 fn solve_without_images(
     rows: &[Row],
-    constant: Option<MotorConstant>,
+    constant: MotorConstant,
     timing: &Timing,
     winding: [f64; 2],
 ) -> Found {
@@ -241,7 +241,7 @@ fn solve_without_images(
 
 fn solve_with(
     rows: &[Row],
-    constant: Option<MotorConstant>,
+    constant: MotorConstant,
     image: impl Fn(usize) -> Complex<f64>,
 ) -> Found {
     let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
@@ -255,12 +255,11 @@ fn solve_with(
             }
         }
     }
-    if let Some(([of_resistance, of_constant], volts)) = constant.map(|one| one.equation()) {
-        let sure = SURE * normal[(2, 2)];
-        let row = Vector4::new(of_resistance, 0.0, of_constant, 0.0);
-        normal += sure * row * row.transpose();
-        right += sure * volts * row;
-    }
+    let ([of_resistance, of_constant], volts) = constant.equation();
+    let sure = SURE * normal[(2, 2)];
+    let row = Vector4::new(of_resistance, 0.0, of_constant, 0.0);
+    normal += sure * row * row.transpose();
+    right += sure * volts * row;
     // Each in its own size, so that the inverse is one of likes.
     let scale = normal.diagonal().map(|d: f64| 1.0 / d.sqrt());
     let scaled = Matrix4::from_diagonal(&scale) * normal * Matrix4::from_diagonal(&scale);

@@ -30,7 +30,7 @@ pub struct Known {
     /// Current from which a bridge's whole dead time counts, A.
     pub knee_a: f64,
     /// Motor constants from steady rates: better than what small motions say of them.
-    pub motor_constants: Option<[MotorConstant; 3]>,
+    pub motor_constants: [MotorConstant; 3],
     /// What the machine may be.
     pub guess: Guess,
     /// Lines up to here are followed, Hz.
@@ -60,12 +60,11 @@ pub fn drive_model(
                     model.electrical[pivot].motor_constant,
                 )
             });
-            let motor_constant = known.motor_constants.map(|all| all[pivot]);
             electrical(
                 &equations[pivot],
                 timing,
                 &Besides {
-                    motor_constant,
+                    motor_constant: known.motor_constants[pivot],
                     mechanics,
                 },
             )

@@ -2,8 +2,8 @@
 
 use super::steady::{KNEE_A, all_rates};
 use super::{Excited, Machine, PLAN, Plan, TIMING, WEAKER, excite};
-use commissioning::chain::Place;
-use commissioning::drive_model::{DriveModel, Guess, Known, Responses, drive_model};
+use commissioning::chain::{Chain, Place};
+use commissioning::drive_model::{DriveModel, Electrical, Guess, Known, Responses, drive_model};
 use commissioning::frequency_response::{Line, frequency_response};
 use commissioning::friction::friction;
 use hal_sim::machine::devices::StageParameters;
@@ -36,11 +36,11 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
             ROUGH_OHM * warm * parameters.plant.resistance_ohm,
         )
         .expect("there is friction");
-        found.constant
+        found.motor_constant
     });
     let known = Known {
         knee_a: KNEE_A,
-        motor_constants: Some(motor_constants),
+        motor_constants,
         guess: Guess::STAGE,
         to_hz: 2_500.0,
     };
@@ -154,6 +154,15 @@ pub fn errors(parameters: &StageParameters, found: &Identified) -> [f64; 13] {
         worst(&|i| electrical[i].motor_constant / constant - 1.0),
         worst(&|i| found_inertia[(i, i)] / inertia[(i, i)] - 1.0),
     ]
+}
+
+/// Mechanics and drives as they are, as warm as they were while they were excited.
+pub fn as_warm(parameters: &StageParameters, excited: &Excited) -> (Chain, [Electrical; 3]) {
+    let (chain, mut electrical) = loop_model(parameters);
+    for (drive, warmer_k) in electrical.iter_mut().zip(excited.warmer_k) {
+        drive.resistance_ohm *= 1.0 + parameters.plant.winding.resistance_per_k * warmer_k;
+    }
+    (chain, electrical)
 }
 
 /// Median, 90 % and the largest.

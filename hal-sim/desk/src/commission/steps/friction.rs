@@ -5,6 +5,7 @@ use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
+use crate::record::RecordError;
 use commissioning::dead_time::dead_time_share;
 use commissioning::friction::{MOST_RESIDUAL, SteadyRate, friction, mean};
 use std::f64::consts::TAU;
@@ -49,24 +50,22 @@ pub(super) fn run(
     }
     let [coulomb, viscous] = mean(&[all[0], all[1], all[2]]);
     for (pivot, one) in all.iter().enumerate() {
-        let gear = bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
+        known.motor_constants[pivot] = one.motor_constant;
+        let motor_constant = known.motor_constant(pivot);
+        let torque_constant = torque_constant(bench, pivot, motor_constant)?;
         bench.set(&[
-            (
-                id::of(id::TORQUE_CONSTANT, pivot),
-                one.motor_constant / gear,
-            ),
+            torque_constant,
             (id::of(id::COULOMB, pivot), coulomb),
             (id::of(id::VISCOUS, pivot), viscous.max(0.0)),
         ])?;
-        known.motor_constants[pivot] = one.constant;
         found.number(
             format!("motor of pivot {}", pivot + 1),
-            one.motor_constant,
+            motor_constant,
             "V s/rad",
         );
         found.push(Finding::told(
             format!("motor of pivot {}", pivot + 1),
-            format!("{:.3} V s/rad at the ring", one.motor_constant),
+            format!("{motor_constant:.3} V s/rad at the ring"),
         ));
     }
     let left = all.iter().map(|one| one.residual).fold(0.0, f64::max);
@@ -84,6 +83,16 @@ pub(super) fn run(
         format!("{coulomb:.3} N m, and {viscous:.3} N m s/rad"),
     ));
     Ok(())
+}
+
+/// The parameter that tells a motor constant, and its value.
+pub(super) fn torque_constant(
+    bench: &mut Bench<'_>,
+    pivot: usize,
+    motor_constant: f64,
+) -> Result<(u32, f64), RecordError> {
+    let gear = bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
+    Ok((id::of(id::TORQUE_CONSTANT, pivot), motor_constant / gear))
 }
 
 /// A pivot's with the mean of the three currents. Carriages that do not slide hold a torque between the rings, another one each time that

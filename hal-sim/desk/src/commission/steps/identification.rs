@@ -1,5 +1,6 @@
 //! The numbers of drives and platform, from multisines on one motor after the other while the platform turns in the middle, and far out.
 
+use super::friction::torque_constant;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
@@ -119,7 +120,7 @@ impl Fitting {
         };
         let before = Before {
             knee_a: bench.parameter(id::of(id::DEAD_TIME_KNEE, 0))?,
-            motor_constants: Some(known.motor_constants),
+            motor_constants: known.motor_constants,
             guess: Guess::STAGE,
             to_hz: TO_HZ,
         };
@@ -224,12 +225,9 @@ fn tell_drives(
         );
         known.windings[pivot] = [ohm, henry];
         known.motor_constants[pivot] = MotorConstant::known(drive.motor_constant);
-        let gear = bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
+        let torque_constant = torque_constant(bench, pivot, drive.motor_constant)?;
         bench.set(&[
-            (
-                id::of(id::TORQUE_CONSTANT, pivot),
-                drive.motor_constant / gear,
-            ),
+            torque_constant,
             (id::of(id::RESISTANCE, pivot), ohm),
             (id::of(id::INDUCTANCE, pivot), henry),
         ])?;
