@@ -3,8 +3,12 @@
 //! A known voltage `e` is added to what a servo asks for; `S = U E^-1` is what the loop leaves of it. U is not the voltage that the bridge was told: of
 //! that the dead time takes a part, and the controller adds what it thinks that to be. It is the voltage at the winding, which currents
 //! and angles tell: `U = (R + s L) I + K s p`, p being the motor's angle. The plant that the servos see is `Phi U^-1`.
+//!
+//! The motor's angle is that of its ring and what the transmission winds up by. Beside the frequency at which the motor swings on the transmission
+//! by itself that does not follow from the ring's, and the model tells it from the currents of all three drives: where the platform resonates
+//! near by, the motor's back-EMF is most of the voltage.
 
-use crate::chain::Chain;
+use crate::chain::{Chain, Place};
 use crate::drive_model::Electrical;
 use crate::frequency_response::{Line, Run, hold};
 use crate::record::Timing;
@@ -30,7 +34,7 @@ pub fn closed_loop(
     runs: &[Run],
     lines: &[Line],
     peak_v: f64,
-    model: (&[Electrical; 3], &Chain),
+    model: (&[Electrical; 3], &Chain, &Place),
     timing: &Timing,
 ) -> Vec<LoopLine> {
     let mut excited: Vec<_> = runs
@@ -70,16 +74,59 @@ fn excitation(run: &Run, peak_v: f64, timing: &Timing) -> Vec<(f64, Complex<f64>
 /// Voltages at the windings.
 fn winding_volts(
     line: &Line,
-    (drives, chain): (&[Electrical; 3], &Chain),
+    (drives, chain, place): (&[Electrical; 3], &Chain, &Place),
 ) -> Matrix3<Complex<f64>> {
     let s = Complex::new(0.0, TAU * line.hz);
+    let torques = Matrix3::from_fn(|i, k| line.current_a[(i, k)] * drives[i].motor_constant);
+    let as_modelled = chain.compliance(line.hz, place).motor * torques * s;
     Matrix3::from_fn(|i, k| {
         let (drive, current) = (&drives[i], line.current_a[(i, k)]);
         let ring_rate = s * line.angle_rad[(i, k)];
-        // Beside its own resonance, where the motor does not follow the ring, back-EMF is little beside what the winding takes.
         let rate = chain
-            .motor_rate(line.hz, ring_rate, drive.motor_constant * current)
-            .unwrap_or(ring_rate);
+            .motor_rate(line.hz, ring_rate, torques[(i, k)])
+            .unwrap_or(as_modelled[(i, k)]);
         (drive.resistance_ohm + s * drive.inductance_h) * current + drive.motor_constant * rate
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive_model::Guess;
+
+    /// A motor that swings on its transmission at 500 Hz, and a platform that resonates near by: the voltage at the windings is told all the way.
+    #[test]
+    fn a_motor_on_its_transmission_is_told_beside_its_own_frequency_too() {
+        let chain = Chain {
+            stiffness: Guess::STAGE.0.motor_inertia * (TAU * 500.0).powi(2),
+            damping: 1.4,
+            ..Guess::STAGE.0
+        };
+        let drive = Electrical {
+            resistance_ohm: 2.0,
+            inductance_h: 8e-4,
+            motor_constant: 3.5,
+            dead_time_v: 0.0,
+            deviations: [0.0; 4],
+        };
+        let (place, none) = (Place::centre(), Matrix3::zeros());
+        let constant = Complex::from(drive.motor_constant);
+        for hz in (300..900).map(f64::from) {
+            let s = Complex::new(0.0, TAU * hz);
+            let answer = chain.compliance(hz, &place);
+            let impedance = Complex::from(drive.resistance_ohm) + s * drive.inductance_h;
+            let expected =
+                Matrix3::identity() * impedance + answer.motor * (constant * constant * s);
+            let line = Line {
+                hz,
+                volts: Matrix3::zeros(),
+                current_a: Matrix3::identity(),
+                angle_rad: answer.ring * constant,
+                angle_deviation_rad: none,
+                current_deviation_a: none,
+            };
+            let off = winding_volts(&line, (&[drive; 3], &chain, &place)) - expected;
+            assert!(off.norm() < 1e-6 * expected.norm(), "{hz} Hz: {off}");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 mod machine;
 
-use commissioning::chain::Chain;
+use commissioning::chain::{Chain, Place};
 use commissioning::closed_loop::closed_loop;
 use commissioning::drive_model::{Electrical, Guess};
 use commissioning::frequency_response::{Line, ResponseError, Run, frequency_response, hold};
@@ -229,7 +229,13 @@ fn closed_loops_are_those_of_the_feedback() {
     let peak_v = period_v(&bins, 1.5)
         .iter()
         .fold(0.0_f64, |peak, volts| peak.max(volts.abs()));
-    let found = closed_loop(&runs, &lines, peak_v, (&[drive; 3], &rigid), &TIMING);
+    let found = closed_loop(
+        &runs,
+        &lines,
+        peak_v,
+        (&[drive; 3], &rigid, &Place::centre()),
+        &TIMING,
+    );
     let (mut worst_plant, mut worst_loop) = (0.0_f64, 0.0_f64);
     for line in &found {
         let [_, plant] = response(line.hz);

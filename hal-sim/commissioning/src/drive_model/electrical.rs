@@ -41,15 +41,26 @@ pub struct Electrical {
 
 /// What copper's resistance gains with each kelvin, over itself.
 pub const COPPER_1_K: f64 = 0.0039;
-/// How much warmer than while it was identified a winding may be at work, K.
+/// How much warmer than while it was identified a winding may be at work, and how much colder after a rest: identification warms it, K.
 const AT_WORK_K: f64 = 60.0;
+const RESTED_K: f64 = 8.0;
 
 impl Electrical {
     /// With its winding as warm as it may be at work.
     #[must_use]
     pub fn at_work(&self) -> Self {
+        self.warmer(AT_WORK_K)
+    }
+
+    /// With its winding as cold as it may be after a rest.
+    #[must_use]
+    pub fn rested(&self) -> Self {
+        self.warmer(-RESTED_K)
+    }
+
+    fn warmer(&self, by_k: f64) -> Self {
         Self {
-            resistance_ohm: self.resistance_ohm * (1.0 + COPPER_1_K * AT_WORK_K),
+            resistance_ohm: self.resistance_ohm * (1.0 + COPPER_1_K * by_k),
             ..*self
         }
     }

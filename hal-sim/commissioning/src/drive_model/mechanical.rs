@@ -74,7 +74,8 @@ pub struct Mechanical {
     pub excited: Chain,
     /// Standard deviations, over themselves, in the order of [`NAMES`]; those of the last two are in kg m^2.
     pub deviations: Vec<f64>,
-    /// What a model leaves of the responses in the middle to which all lines are alike, over them: root of the mean square over lines and entries.
+    /// What a model leaves of the responses in the middle to which all lines are alike, besides their noise, over them: root of the mean square over
+    /// lines and entries.
     pub residual: f64,
     /// Standard deviation of a motor and its ring together, over itself: the sum is known better than either.
     pub drive_inertia_deviation: f64,
@@ -173,15 +174,18 @@ pub fn mechanical(
     measured.extend(of(responses.weaker, &centre, responses.times));
     measured.extend(of(responses.far, responses.far_place, 1.0));
     let prior = to_unknowns(&guess.0);
-    let first = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured);
+    // The lines in the middle alone say what springs there are: all at once may end where none of them is followed.
+    let alone = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured[..in_the_middle]);
     let mut starts: Vec<_> = (TRANSMISSIONS.iter())
         .flat_map(|&k| GUIDES.map(|g| start(&guess.0, k, g, &measured)))
-        .map(|start| (first(&start).norm_squared(), start))
+        .map(|start| (alone(&start).norm_squared(), start))
         .collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let all = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured);
     let best = (starts.iter().take(FOLLOWED))
-        .filter_map(|(_, start)| minimise(start, STEPS, first))
-        .min_by(|a, b| a.cost.total_cmp(&b.cost));
+        .filter_map(|(_, start)| minimise(start, STEPS, alone))
+        .min_by(|a, b| a.cost.total_cmp(&b.cost))
+        .and_then(|minimum| minimise(&minimum.at, STEPS, all));
     let mut minimum = best.ok_or(DriveError::NoFit { percent: 100 })?;
     let residual = left(&minimum.at, &measured[..in_the_middle]);
     if residual > MOST_RESIDUAL {
@@ -381,9 +385,12 @@ fn residuals(
     DVector::from_vec(all)
 }
 
-/// What a model leaves of all responses, over them: root of the mean square.
+/// What a model leaves of all responses besides their noise, over them: root of the mean square.
 fn left(unknowns: &DVector<f64>, measured: &[Measured<'_>]) -> f64 {
-    let squares = measured.iter().map(|line| line.left(unknowns).powi(2));
+    let squares = measured.iter().map(|line| {
+        let noise = line.noise.norm() / line.response.norm();
+        f64::max(0.0, line.left(unknowns).powi(2) - noise.powi(2))
+    });
     f64::sqrt(squares.sum::<f64>() / measured.len() as f64)
 }
 

@@ -140,7 +140,8 @@ impl Plant {
             .collect()
     }
 
-    /// With a load, what an identified machine may be as well, at each place: springs and dampers off, windings warm at work.
+    /// With a load, what an identified machine may be as well, at each place: springs and dampers off, windings cold after a rest or warm at
+    /// work.
     #[must_use]
     pub fn as_they_may_be(
         model: &DriveModel,
@@ -151,7 +152,8 @@ impl Plant {
         let [softer, stiffer] = &chain.as_it_may_be(&model.mechanical.uncertainty());
         let as_found = &model.electrical;
         let at_work = &as_found.each_ref().map(Electrical::at_work);
-        [(as_found, softer), (as_found, stiffer), (at_work, chain)]
+        let rested = &as_found.each_ref().map(Electrical::rested);
+        [(rested, softer), (as_found, stiffer), (at_work, chain)]
             .map(|(electrical, chain)| Self::at_places(electrical, chain, places, timing))
             .concat()
     }

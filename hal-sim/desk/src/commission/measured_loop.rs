@@ -1,7 +1,8 @@
 //! A loop as it was measured at a spot, and what it is worth.
 
 use super::bench::Bench;
-use super::found::{CommissionError, Found, Plot, Table};
+use super::found::{CommissionError, Found, Plot, Table, fail};
+use super::id;
 use super::sines::{Excited, Recorded, Spot, excite};
 use commissioning::chain::{Chain, Place};
 use commissioning::closed_loop::{LoopLine, closed_loop};
@@ -31,6 +32,20 @@ pub fn place(spot: &Spot, radius_m: f64) -> Option<Place> {
     Place::new(spot.x_mm * 1e-3 / radius_m, spot.y_mm * 1e-3 / radius_m)
 }
 
+/// The same with the radius that the controller is told of.
+pub fn place_of(bench: &mut Bench<'_>, spot: &Spot) -> Result<Place, CommissionError> {
+    let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
+    place(spot, radius_m).map_or_else(
+        || {
+            fail(
+                format!("{} is outside of the track", spot.words()),
+                "the track's radius, a parameter, is too small",
+            )
+        },
+        Ok,
+    )
+}
+
 impl MeasuredLoop {
     /// Measures it.
     pub fn measure(
@@ -40,23 +55,29 @@ impl MeasuredLoop {
         model: &DriveModel,
     ) -> Result<Self, CommissionError> {
         let excited = excite(bench, &spot, (SETS, peak_v), Recorded::Loop)?;
-        Ok(Self::new(&excited, spot, model))
+        Self::new(bench, &excited, spot, model)
     }
 
     /// From what was recorded.
-    pub fn new(excited: &Excited, spot: Spot, model: &DriveModel) -> Self {
+    pub fn new(
+        bench: &mut Bench<'_>,
+        excited: &Excited,
+        spot: Spot,
+        model: &DriveModel,
+    ) -> Result<Self, CommissionError> {
+        let place = place_of(bench, &spot)?;
         let lines = closed_loop(
             &excited.runs,
             &excited.lines,
             excited.peak_v,
-            (&model.electrical, &model.mechanical.excited),
+            (&model.electrical, &model.mechanical.excited, &place),
             &Timing::STAGE,
         );
-        Self {
+        Ok(Self {
             spot,
             peak_v: excited.peak_v,
             lines,
-        }
+        })
     }
 
     /// Largest singular value of the sensitivity over all lines.

@@ -6,7 +6,7 @@ use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
-use crate::commission::measured_loop::place;
+use crate::commission::measured_loop::place_of;
 use crate::commission::sines::{
     CENTRE, Excited, FAR_OUT, GENTLE_V, PEAK_V, Recorded, WEAKER, excite,
 };
@@ -111,13 +111,7 @@ struct Fitting {
 
 impl Fitting {
     fn new(bench: &mut Bench<'_>, known: &Known) -> Result<Self, CommissionError> {
-        let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
-        let Some(far_place) = place(&FAR_OUT, radius_m) else {
-            return fail(
-                format!("{} is outside of the track", FAR_OUT.words()),
-                "the track's radius, a parameter, is too small",
-            );
-        };
+        let far_place = place_of(bench, &FAR_OUT)?;
         let before = Before {
             knee_a: bench.parameter(id::of(id::DEAD_TIME_KNEE, 0))?,
             motor_constants: known.motor_constants,

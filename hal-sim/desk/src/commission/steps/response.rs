@@ -32,7 +32,7 @@ pub(super) fn run(
     let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
     for spot in [CENTRE, NEAR_RIM] {
         let measured = match &excited {
-            Some(excited) if spot == CENTRE => MeasuredLoop::new(excited, spot, &model),
+            Some(excited) if spot == CENTRE => MeasuredLoop::new(bench, excited, spot, &model)?,
             _ => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
         };
         found.push(told(&measured));

@@ -95,16 +95,17 @@ impl<'a> Search<'a> {
             heavier: (more_kg > 0.0).then(|| chain.carrying(more_kg, radius_m)),
             measured: Vec::new(),
         };
-        search.also_on(&known.loops)
+        search.on(&known.loops)
     }
 
-    /// The same on these loops as well.
-    fn also_on(&self, loops: &[MeasuredLoop]) -> Self {
+    /// The same on these loops in place of others.
+    fn on(&self, loops: &[MeasuredLoop]) -> Self {
         let chain = &self.model.mechanical.chain;
         let plants = (loops.iter()).filter_map(|measured| measured.plant(chain, self.radius_m));
-        let mut search = self.clone();
-        search.measured.extend(plants);
-        search
+        Self {
+            measured: plants.collect(),
+            ..self.clone()
+        }
     }
 
     /// With a load, as it was found, and as it may be. The controller schedules its gains by the load that it knows.
@@ -189,7 +190,8 @@ impl<'a> Search<'a> {
     }
 
     /// The best that was measured with gains and with some that are as much slower or faster as the loops ask for, where it is better than what was.
-    /// Where loops do not keep Ms, gains are sought once more on what they show: near the edge a loop tells more of its plant than far from it.
+    /// Where loops do not keep Ms, gains are sought once more on what these show, and not on the former ones: near the edge a loop tells more of its
+    /// plant than far from it.
     fn best(
         &self,
         bench: &mut Bench<'_>,
@@ -229,13 +231,14 @@ impl<'a> Search<'a> {
             }
             let by = (AIMED_MS / ms).powf(MS_POWER);
             let next = gains.slowed(by.clamp(LEAST_BY, MOST_BY));
+            let nearer = self.on(&after);
             gains = if ms <= MOST_MS {
-                match self.sound_and_faster(&next, &gains) {
+                match nearer.sound_and_faster(&next, &gains) {
                     Some(faster) => faster,
                     None => break,
                 }
             } else if tries == 0 {
-                (self.also_on(&after).sought()).map_or(next, |(sought, _)| sought)
+                (nearer.sought()).map_or(next, |(sought, _)| sought)
             } else {
                 next
             };
