@@ -2,14 +2,16 @@
 
 mod machine;
 
-use commissioning::chain::Place;
-use commissioning::chain::{Chain, Load};
-use commissioning::drive_model::Guess;
+use commissioning::chain::{Chain, Load, Place};
+use commissioning::drive_model::{Electrical, Guess, Mechanical, Responses, mechanical};
+use commissioning::frequency_response::Line;
 use hal_sim::machine::plant::Plant;
+use hal_sim::rig::loop_model;
 use machine::truth::{
     NAMES, OFF_NAMES, errors, identify, off_over_uncertainty, resonances_hz, ring_inertia,
 };
 use machine::{PLAN, unknown};
+use nalgebra::{Complex, Matrix3};
 
 /// Of some of the machines of `cargo bench -p commissioning --bench machines`: its worst figure over 20 and a tenth more, in the order of [`NAMES`].
 const WORST: [f64; 13] = [
@@ -51,6 +53,72 @@ fn unknown_machines_are_identified() {
                 .all(|line| line.quality() > 0.95)
         );
     }
+}
+
+/// So many lines over the commissioning's frequencies, and how far the last one may be, over itself.
+fn lines(count: u32, chain: &Chain, place: &Place, noise_of_last: f64) -> Vec<Line> {
+    const HZ: [f64; 2] = [29.3, 2295.0];
+    let share = |k: u32| f64::from(k) / f64::from(count - 1);
+    let mut lines: Vec<_> = (0..count)
+        .map(|k| HZ[0] * (HZ[1] / HZ[0]).powf(share(k)))
+        .map(|hz| Line {
+            hz,
+            volts: Matrix3::zeros(),
+            current_a: Matrix3::identity(),
+            angle_rad: chain.compliance(hz, place).ring * Complex::from(MOTOR_CONSTANT),
+            angle_deviation_rad: Matrix3::zeros(),
+            current_deviation_a: Matrix3::zeros(),
+        })
+        .collect();
+    let last = lines.last_mut().expect("a line");
+    last.angle_deviation_rad = last.angle_rad.map(|angle| noise_of_last * angle.norm());
+    last.angle_rad *= Complex::from(1.0 - noise_of_last);
+    lines
+}
+
+const MOTOR_CONSTANT: f64 = 3.0;
+
+/// What is found of a machine whose gears have play and whose carriages stick, by lines as the model has them but for the last one's noise.
+fn found_without_noise(seed: u64, noise_of_last: f64) -> Mechanical {
+    const TIMES: f64 = 2.5;
+    let (mut chain, _) = loop_model(&hal_sim::machine::unknown(seed));
+    (chain.along_stiffness, chain.along_damping) = (3_000.0, 2.0);
+    let drive = Electrical {
+        resistance_ohm: 2.0,
+        inductance_h: 8e-4,
+        motor_constant: MOTOR_CONSTANT,
+        dead_time_v: 0.0,
+        deviations: [0.0; 4],
+    };
+    let (centre, far) = (Place::centre(), Place::new(0.73, 0.0).expect("inside"));
+    let excited = |times: f64| chain.with_play(0.1 * times, 0.5 * times);
+    let responses = Responses {
+        lines: &lines(45, &excited(1.0), &centre, noise_of_last),
+        weaker: &lines(30, &excited(TIMES), &centre, 0.0),
+        times: TIMES,
+        far: &lines(30, &excited(1.0), &far, 0.0),
+        far_place: &far,
+    };
+    let found = mechanical(&responses, &[drive; 3], &Guess::STAGE, 2_300.0);
+    found.unwrap_or_else(|error| panic!("{seed}: {error}"))
+}
+
+/// Of machines 1 to 60 and three sizes of play all are followed: none ends where another set of springs is nearly as good.
+#[test]
+fn lines_of_the_model_are_followed() {
+    for seed in 31..=40 {
+        let found = found_without_noise(seed, 0.0);
+        println!("{seed}: {:.5}", found.residual);
+        assert!(found.residual < 3.4e-4, "{seed}: {}", found.residual);
+    }
+}
+
+/// A ring that hardly answers at the highest line shows noise there: no model leaves that.
+#[test]
+fn noise_is_not_what_the_model_leaves() {
+    let found = found_without_noise(35, 0.7);
+    println!("{:.5}", found.residual);
+    assert!(found.residual < 1.34e-3, "{}", found.residual);
 }
 
 /// The chain against the simulator's own matrices: the guess's numbers in a machine have the guess's resonances.
