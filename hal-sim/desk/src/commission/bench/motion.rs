@@ -7,7 +7,7 @@ const SETTLING_S: f64 = 5.0;
 /// Longest time for which the platform turns without being asked again: more than any step takes, with records over a slow line.
 const TURNING_MS: u32 = 600_000;
 /// Time after a move in which a stage settles that does, s.
-const STAY_S: f64 = 1.0;
+const STAY_S: f64 = 0.3;
 /// What `LST?` tells of following errors since it was asked last.
 pub(in crate::commission) const PEAK: &str = "PEAK_ERROR_RAD";
 
