@@ -184,3 +184,47 @@ fn a_nudge_that_another_client_stops_is_no_jig() {
         "a nudge to see whether the jig is out has ended by",
     );
 }
+
+/// Nobody is beside it, and it does not bring back what it keeps.
+struct Alone(SimulatedMachine);
+
+impl Machine for Alone {
+    fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
+        if line == "RPA" {
+            return Err(RecordError::Refused {
+                line: line.to_owned(),
+                code: 4011,
+                hint: "",
+            });
+        }
+        self.0.ask(line)
+    }
+
+    fn delay(&mut self, seconds: f64) -> Result<(), RecordError> {
+        self.0.delay(seconds)
+    }
+
+    fn request(&mut self, _: Task) -> Result<(), RecordError> {
+        Err(RecordError::Broken {
+            place: "the keyboard".to_owned(),
+            error: std::io::Error::other("closed"),
+        })
+    }
+}
+
+#[test]
+fn a_run_that_nobody_answers_says_what_it_leaves() {
+    let mut alone = Alone(SimulatedMachine::new(
+        &unknown(1),
+        SettingsFlash::in_memory(),
+    ));
+    let ran = run(&mut alone, &Chosen::all(ZerosBy::Jig), &mut |_| ());
+    let told = ran.err().expect("nobody").to_string();
+    println!("{told}");
+    assert!(told.contains("the keyboard broke down: closed"), "{told}");
+    assert!(
+        told.contains("what is kept is not in force again"),
+        "{told}"
+    );
+    assert!(told.contains("refused `RPA`"), "{told}");
+}

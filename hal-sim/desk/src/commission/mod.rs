@@ -182,9 +182,7 @@ pub fn run(
                 Some(Failure::new(what, "see what FLT? and EVT? tell"))
             }
             Err(CommissionError::Controller(error)) => {
-                // It may be the person who does not answer. Where it is the controller, this fails as well.
-                let _ = bench.give_up();
-                return Err(error);
+                return Err(ended(&mut bench, error));
             }
         };
         let seconds = bench.clock_s()? - start_s;
@@ -225,6 +223,19 @@ pub fn run(
         false => Tunable::of(known, &mut bench)?,
     };
     Ok(Ran { done: all, tunable })
+}
+
+/// After a controller or a person who does not answer any more: everything as it was before, where that is the person; why it has ended, and what was
+/// refused of that.
+fn ended(bench: &mut Bench<'_>, error: RecordError) -> RecordError {
+    match bench.give_up() {
+        Err(refused @ RecordError::Refused { .. }) => RecordError::NotAsBefore {
+            error: Box::new(error),
+            refused: Box::new(refused),
+        },
+        // Where nobody answers nothing more is known.
+        _ => error,
+    }
 }
 
 /// After a failure: everything as it was before, or what was refused of that.

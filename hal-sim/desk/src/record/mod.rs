@@ -129,6 +129,14 @@ pub enum RecordError {
         /// The time it had.
         patience: Duration,
     },
+    /// It has ended, and what the controller keeps is not in force again.
+    #[error("{error}; and what is kept is not in force again: {refused}")]
+    NotAsBefore {
+        /// Why it has ended.
+        error: Box<Self>,
+        /// What was refused of bringing that back.
+        refused: Box<Self>,
+    },
 }
 
 impl RecordError {
