@@ -41,7 +41,7 @@ pub struct Electrical {
 
 /// What copper's resistance gains with each kelvin, over itself.
 pub const COPPER_1_K: f64 = 0.0039;
-/// How much warmer than while it was identified a winding may be at work, and how much colder after a rest: identification warms it, K.
+/// How much warmer than while it was identified a winding may be at work, K; and how much colder after a rest, as identification warms it.
 const AT_WORK_K: f64 = 60.0;
 const RESTED_K: f64 = 8.0;
 
