@@ -3,11 +3,16 @@
 //! Along the tour every ring's torque is linear in what is sought:
 //!
 //! ```text
-//! T = J p'' + Tc z + b p' + T0 + J^-T (M q'' + forces of the turning moment + (F z_rho + c rho') drho/dq + k q)
+//! T (1 - g) = J p'' + Jm A (sin(n p + a))'' + Tc z + b p' + T0 + J^-T (M q'' + forces of the turning moment + (F z_rho + c rho') drho/dq + k q)
 //! ```
 //!
-//! z are the contacts that rub, -1 to 1: signs of the rates but for a way of presliding after each reversal (Dahl's). A sign alone would be early
-//! there, and what it is early by is like an inertia.
+//! g is how much more a torque is than it is told, beside the mean of all three: of current sensors and motor constants. A mean that is free would make all
+//! torques nothing; a ring that all others are told beside would have what is left over made small at theirs. A is what an uneven gear moves its motor by, of
+//! inertia Jm, n times a turn.
+//!
+//! z are the contacts that rub, -1 to 1. Instants at which a ring stands or creeps do not count: there friction is none of these. Of rings z is the sign of the
+//! rate, then; of carriages, which turn back while all rings go on, it is that but for a way of presliding after each reversal (Dahl's). A sign alone would be
+//! early there, and what it is early by is like an inertia.
 //!
 //! M is made of mass, inertia and first moment of platform and payload; F and c are the friction along the guides, k the cables' stiffness, p the ring angles,
 //! q the pose. Angles give the pose by the direct kinematics ([`kinematics::direct()`]); all signals are smoothed alike before anything is
@@ -37,10 +42,10 @@ pub struct Evaluation {
     pub track_radius_m: f64,
     /// Length of the window with which all signals are smoothed, s.
     pub smoothing_s: f64,
-    /// Inertia of a motor and its ring, kg m^2, where it is known; `None`: it is sought too.
-    pub drive_inertia: Option<f64>,
-    /// Presliding of the rings, rad (parameter 0x5450080A), and of carriages on their guides, track radii.
-    pub presliding: [f64; 2],
+    /// Turns of a motor in a turn of its ring.
+    pub gear_ratio: f64,
+    /// Presliding of carriages on their guides, track radii.
+    pub presliding: f64,
 }
 
 /// What is carried, as found.
@@ -101,6 +106,16 @@ pub enum PlatformError {
         /// As computed.
         condition: f64,
     },
+    /// A torque that is not what it is told.
+    #[error(
+        "the torque of pivot {pivot} is {percent} % off what it is told, beside the mean of all"
+    )]
+    Gain {
+        /// Counted from 1.
+        pivot: usize,
+        /// Of the torque.
+        percent: i32,
+    },
     /// Torques of something else.
     #[error(
         "{percent} % of the torques are left over: wrong zeros, wrong motor constants, or something rubs"
@@ -115,19 +130,25 @@ pub enum PlatformError {
 pub const MOST_CONDITION: f64 = 100.0;
 /// More that is left is refused.
 pub const MOST_RESIDUAL: f64 = 0.25;
-const UNKNOWNS: usize = 19;
+/// A torque that is more off what it is told is refused: current sensors are within some percent.
+pub const MOST_GAIN: f64 = 0.1;
+const UNKNOWNS: usize = 25;
+/// Inertia of a motor and its ring.
+const DRIVE: usize = 4;
 /// Friction along a guide times the track's radius: N m, and N m s.
 const GUIDE: usize = 11;
 const GUIDE_VISCOUS: usize = 16;
-/// The first of those that say how much more a torque is than it is told, of rings 2 and 3 beside ring 1.
+/// How much more the torques are than they are told: cosine and sine parts over the three.
 const GAINS: usize = 17;
+/// The first of the uneven gears': cosine and sine of the first ring's, then of the next.
+const GEARS: usize = 19;
 
-/// What is carried, by linear least squares.
+/// What is carried, by linear least squares: of one tour, or of several with the same load.
 ///
 /// # Errors
 /// [`PlatformError`].
-pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError> {
-    let fit = fit(std::slice::from_ref(tour), how, Gains::Known)?;
+pub fn platform(tours: &[Tour], how: &Evaluation) -> Result<Platform, PlatformError> {
+    let fit = fit(tours, how)?;
     if !(fit.condition <= MOST_CONDITION) {
         return Err(PlatformError::Condition {
             condition: fit.condition,
@@ -140,25 +161,44 @@ pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError
         });
     }
     let (numbers, deviations, radius) = (fit.numbers, fit.deviations, how.track_radius_m);
+    let gains = of_three([numbers[GAINS], numbers[GAINS + 1]]);
+    if let Some(pivot) = gains.iter().position(|gain| !(gain.abs() <= MOST_GAIN)) {
+        return Err(PlatformError::Gain {
+            pivot: pivot + 1,
+            percent: (100.0 * gains[pivot]) as i32,
+        });
+    }
     Ok(Platform {
         mass_kg: numbers[0] / (radius * radius),
         inertia_kg_m2: numbers[1],
         moment_kg_m: [numbers[2] / radius, numbers[3] / radius],
-        drive_inertia: how.drive_inertia.unwrap_or(numbers[4]),
+        drive_inertia: numbers[DRIVE],
         friction: [
             numbers[5..8].iter().sum::<f64>() / 3.0,
             numbers[8..11].iter().sum::<f64>() / 3.0,
         ],
-        carriages: fit.carriages(radius),
+        carriages: Carriages {
+            coulomb_n: numbers[GUIDE] / radius,
+            deviation_n: deviations[GUIDE] / radius,
+            viscous_n_s_m: numbers[GUIDE_VISCOUS] / (radius * radius),
+        },
         deviations: [
             deviations[0] / (radius * radius),
             deviations[1],
             deviations[2] / radius,
             deviations[3] / radius,
-            deviations[4],
+            deviations[DRIVE],
         ],
         residual,
         condition: fit.condition,
+    })
+}
+
+/// Two numbers for three pivots, whose mean is 0.
+pub(crate) fn of_three([cosine, sine]: [f64; 2]) -> [f64; 3] {
+    [0.0, 1.0, 2.0].map(|pivot| {
+        let (sin, cos) = (pivot * TAU / 3.0).sin_cos();
+        cosine * cos + sine * sin
     })
 }
 
@@ -173,49 +213,24 @@ pub(crate) struct Fit {
     condition: f64,
 }
 
-impl Fit {
-    /// Friction of the carriages, with the track's radius in m.
-    pub fn carriages(&self, radius_m: f64) -> Carriages {
-        Carriages {
-            coulomb_n: self.numbers[GUIDE] / radius_m,
-            deviation_n: self.deviations[GUIDE] / radius_m,
-            viscous_n_s_m: self.numbers[GUIDE_VISCOUS] / (radius_m * radius_m),
-        }
-    }
-}
-
+/// Every ring turns as fast where friction is Coulomb's and viscous: below it sticks, creeps and breaks away. Rings of the reference stage slide from 0.005 on.
+const LEAST_RATE_RAD_S: f64 = 0.3;
 /// Rows that err as much as one that errs by itself: neighbours are smoothed with the same window.
 const ALIKE: f64 = 4.0;
 
-/// Of current sensors and motor constants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Gains {
-    /// Those of all rings are alike.
-    Known,
-    /// They are sought, beside ring 1's.
-    Sought,
-}
-
 /// Of one tour, or of several with the same load.
-pub(crate) fn fit(tours: &[Tour], how: &Evaluation, gains: Gains) -> Result<Fit, PlatformError> {
+pub(crate) fn fit(tours: &[Tour], how: &Evaluation) -> Result<Fit, PlatformError> {
     let (mut rows, mut right) = (Vec::new(), Vec::new());
     for tour in tours {
         add_rows(tour, how, &mut rows, &mut right)?;
     }
     let right = DVector::from_vec(right);
-    let unknowns: Vec<usize> = (0..UNKNOWNS)
-        .filter(|&k| match k {
-            4 => how.drive_inertia.is_none(),
-            GAINS.. => gains == Gains::Sought,
-            _ => true,
-        })
+    let matrix = DMatrix::from_fn(rows.len(), UNKNOWNS, |row, k| rows[row][k]);
+    let sizes: Vec<f64> = matrix
+        .column_iter()
+        .map(|column| column.norm().max(1e-12))
         .collect();
-    let matrix = DMatrix::from_fn(rows.len(), unknowns.len(), |row, k| rows[row][unknowns[k]]);
-    let sizes = DVector::from_iterator(
-        unknowns.len(),
-        matrix.column_iter().map(|column| column.norm().max(1e-12)),
-    );
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, k| {
+    let scaled = DMatrix::from_fn(matrix.nrows(), UNKNOWNS, |row, k| {
         matrix[(row, k)] / sizes[k]
     });
     let normal = scaled.tr_mul(&scaled);
@@ -227,14 +242,9 @@ pub(crate) fn fit(tours: &[Tour], how: &Evaluation, gains: Gains) -> Result<Fit,
     let solved = &inverse * scaled.tr_mul(&right);
     let left = &scaled * &solved - &right;
     let variance = left.norm_squared() / right.len() as f64 * ALIKE;
-    let (mut numbers, mut deviations) = ([0.0; UNKNOWNS], [0.0; UNKNOWNS]);
-    for (k, &unknown) in unknowns.iter().enumerate() {
-        numbers[unknown] = solved[k] / sizes[k];
-        deviations[unknown] = (inverse[(k, k)] * variance).sqrt() / sizes[k];
-    }
     Ok(Fit {
-        numbers,
-        deviations,
+        numbers: std::array::from_fn(|k| solved[k] / sizes[k]),
+        deviations: std::array::from_fn(|k| (inverse[(k, k)] * variance).sqrt() / sizes[k]),
         left,
         torques_squared: right.norm_squared(),
         condition,
@@ -256,30 +266,47 @@ fn add_rows(
     }
     let torques = [0, 1, 2].map(|i| smoothed(&tour.torque_n_m[i], window));
     let raw = poses(tour)?;
-    let contacts = contacts(tour, &raw, how).map(|contact| smoothed(&contact, window));
+    let carriages = carriages(&raw, how.presliding).map(|contact| smoothed(&contact, window));
+    let least_way_rad = LEAST_RATE_RAD_S * window as f64 * tour.step_s;
     let part = |k: usize| smoothed(&raw.iter().map(|pose| pose[k]).collect::<Vec<_>>(), window);
     let (x, y, theta) = (part(0), part(1), part(2));
     let poses: Vec<_> = (0..x.len())
         .map(|k| Vector3::new(x[k], y[k], theta[k]))
         .collect();
+    let gears = gears(tour, how.gear_ratio).map(|wave| smoothed(&wave, window));
     // Neighbours tell the same.
     for at in (1..poses.len() - 1).step_by((window / 4).max(1)) {
-        let rubs = [0, 1, 2, 3, 4, 5].map(|k| contacts[k][at]);
-        let (mut matrix, known) = equations(
-            &poses[at - 1..=at + 1],
-            &rubs,
-            tour.step_s,
-            how.drive_inertia,
-        )
-        .ok_or(PlatformError::NoPose { sample: at })?;
-        matrix[1][GAINS] = torques[1][at];
-        matrix[2][GAINS + 1] = torques[2][at];
-        for i in 0..3 {
-            rows.push(matrix[i]);
-            right.push(torques[i][at] - known[i]);
+        let ways = [0, 1, 2].map(|i| tour.angle_rad[i][at + window] - tour.angle_rad[i][at]);
+        if ways.iter().any(|way| !(way.abs() > least_way_rad)) {
+            continue;
         }
+        let rubs = Rubs {
+            rings: ways.map(f64::signum),
+            carriages: [0, 1, 2].map(|i| carriages[i][at]),
+        };
+        let mut matrix = equations(&poses[at - 1..=at + 1], &rubs, tour.step_s)
+            .ok_or(PlatformError::NoPose { sample: at })?;
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[GAINS] = torques[i][at] * of_three([1.0, 0.0])[i];
+            row[GAINS + 1] = torques[i][at] * of_three([0.0, 1.0])[i];
+        }
+        for (k, wave) in gears.iter().enumerate() {
+            let bend = wave[at + 1] - 2.0 * wave[at] + wave[at - 1];
+            matrix[k / 2][GEARS + k] = bend / (tour.step_s * tour.step_s);
+        }
+        rows.extend(matrix);
+        right.extend([0, 1, 2].map(|i| torques[i][at]));
     }
     Ok(())
+}
+
+/// Cosine and sine of each motor's angle, but for where it started.
+fn gears(tour: &Tour, ratio: f64) -> [Vec<f64>; 6] {
+    std::array::from_fn(|k| {
+        let wave = if k % 2 == 0 { f64::cos } else { f64::sin };
+        let angles = tour.angle_rad[k / 2].iter();
+        angles.map(|angle| wave(ratio * angle)).collect()
+    })
 }
 
 /// Means under a Hann window, of as many values.
@@ -311,8 +338,14 @@ fn poses(tour: &Tour) -> Result<Vec<Vector3<f64>>, PlatformError> {
         .collect()
 }
 
-/// Contacts of the three rings and of the three carriages, -1 to 1: `dz/ds = 1 - z sign(ds)` by the way s over the presliding.
-fn contacts(tour: &Tour, poses: &[Vector3<f64>], how: &Evaluation) -> [Vec<f64>; 6] {
+/// What rubs, -1 to 1.
+struct Rubs {
+    rings: [f64; 3],
+    carriages: [f64; 3],
+}
+
+/// Contacts of the three carriages, -1 to 1: `dz/ds = 1 - z sign(ds)` by the way s over the presliding.
+fn carriages(poses: &[Vector3<f64>], presliding: f64) -> [Vec<f64>; 3] {
     let rhos: Vec<[f64; 3]> = (poses.iter())
         .map(|pose| {
             let found = inverse(&Pose {
@@ -323,16 +356,11 @@ fn contacts(tour: &Tour, poses: &[Vector3<f64>], how: &Evaluation) -> [Vec<f64>;
             found.map_or([0.0; 3], |found| found.guides.map(|guide| guide.rho()))
         })
         .collect();
-    let [rings, guides] = how.presliding;
-    std::array::from_fn(|k| {
-        let (place, presliding): (Vec<f64>, f64) = match k {
-            0..3 => (tour.angle_rad[k].clone(), rings),
-            _ => (rhos.iter().map(|rhos| rhos[k - 3]).collect(), guides),
-        };
+    std::array::from_fn(|i| {
         let mut contact = 0.0;
         let mut all = vec![0.0];
-        for pair in place.windows(2) {
-            let way = (pair[1] - pair[0]) / presliding;
+        for pair in rhos.windows(2) {
+            let way = (pair[1][i] - pair[0][i]) / presliding;
             contact = (contact + way) / (1.0 + way.abs());
             all.push(contact);
         }
@@ -340,13 +368,8 @@ fn contacts(tour: &Tour, poses: &[Vector3<f64>], how: &Evaluation) -> [Vec<f64>;
     })
 }
 
-/// Coefficients of all unknowns for each ring's torque at the middle of three poses, and what is known of the torque.
-fn equations(
-    poses: &[Vector3<f64>],
-    rubs: &[f64; 6],
-    step_s: f64,
-    drive_inertia: Option<f64>,
-) -> Option<([[f64; UNKNOWNS]; 3], [f64; 3])> {
+/// Coefficients of all unknowns but those of torques and gears for each ring's torque at the middle of three poses.
+fn equations(poses: &[Vector3<f64>], rubs: &Rubs, step_s: f64) -> Option<[[f64; UNKNOWNS]; 3]> {
     let [before, now, after] = [poses[0], poses[1], poses[2]];
     let twist = (after - before) / (2.0 * step_s);
     let acceleration = (after - 2.0 * now + before) / (step_s * step_s);
@@ -378,7 +401,7 @@ fn equations(
     let along_x = Vector3::new(-turning, a.z, a.y);
     let along_y = Vector3::new(-a.z, -turning, -a.x);
     let (mut rubbing, mut sliding) = (Vector3::zeros(), Vector3::zeros());
-    for (guide, contact) in guides.iter().zip(&rubs[3..]) {
+    for (guide, contact) in guides.iter().zip(&rubs.carriages) {
         let offset_by_pose = Vector3::new(-guide.sin, guide.cos, -guide.projection);
         let by_pose = -(offset_by_pose * (guide.offset / guide.cosine))
             - Vector3::new(guide.cos, guide.sin, guide.offset);
@@ -402,15 +425,12 @@ fn equations(
         for (k, column) in columns.iter().enumerate() {
             row[k] = column[i];
         }
-        row[5 + i] = rubs[i];
+        row[5 + i] = rubs.rings[i];
         row[8 + i] = rates[i];
         row[GUIDE] = guide[i];
         row[12] = cable[i];
         row[13 + i] = 1.0;
         row[GUIDE_VISCOUS] = guide_viscous[i];
     }
-    Some((
-        rows,
-        accelerations.map(|acceleration| drive_inertia.unwrap_or(0.0) * acceleration),
-    ))
+    Some(rows)
 }

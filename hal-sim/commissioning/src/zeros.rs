@@ -7,9 +7,8 @@
 //! Errors of all three zeros alike turn the whole machine, and do not show. What is found are their differences from their mean.
 
 use super::least_squares::{Minimum, minimise};
-use super::platform::{Carriages, Evaluation, Gains, PlatformError, Tour, fit};
+use super::platform::{Evaluation, Platform, PlatformError, Tour, fit, of_three, platform};
 use nalgebra::{DVector, Matrix2, Vector2};
-use std::f64::consts::TAU;
 
 /// Errors of the zeros, as found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +17,8 @@ pub struct ZeroErrors {
     pub too_large_rad: [f64; 3],
     /// Standard deviation of the one that is known worst, as far as what is left over says, rad.
     pub deviation_rad: f64,
-    /// What the carriages rub, with the zeros as they were found.
-    pub carriages: Carriages,
+    /// What is carried, with the zeros as they were found.
+    pub platform: Platform,
 }
 
 /// Steps of the search.
@@ -34,12 +33,11 @@ const STEP_RAD: f64 = 1e-4;
 /// # Errors
 /// [`PlatformError`] of the tours as they are told.
 pub fn zero_errors(tours: &[Tour], how: &Evaluation) -> Result<ZeroErrors, PlatformError> {
-    let told = fit(tours, how, Gains::Sought)?.left;
+    let told = fit(tours, how)?.left;
     let left = |zeros: &DVector<f64>| {
         let corrected: Vec<_> = tours.iter().map(|tour| corrected(tour, zeros)).collect();
         // A pose that there is none of is a step too far.
-        fit(&corrected, how, Gains::Sought)
-            .map_or_else(|_| told.map(|_| f64::INFINITY), |fit| fit.left)
+        fit(&corrected, how).map_or_else(|_| told.map(|_| f64::INFINITY), |fit| fit.left)
     };
     let found = minimise(&DVector::zeros(2), STEPS, left).ok_or(PlatformError::Condition {
         condition: f64::INFINITY,
@@ -49,9 +47,9 @@ pub fn zero_errors(tours: &[Tour], how: &Evaluation) -> Result<ZeroErrors, Platf
         .map(|tour| corrected(tour, &found.at))
         .collect();
     Ok(ZeroErrors {
-        too_large_rad: apart(&found.at),
+        too_large_rad: of_three([found.at[0], found.at[1]]),
         deviation_rad: deviation(&found, left),
-        carriages: fit(&corrected, how, Gains::Sought)?.carriages(how.track_radius_m),
+        platform: platform(&corrected, how)?,
     })
 }
 
@@ -84,17 +82,13 @@ fn deviation(found: &Minimum, left: impl Fn(&DVector<f64>) -> DVector<f64>) -> f
         .sqrt()
 }
 
-/// Two numbers for three angles whose mean is 0.
-fn apart(zeros: &DVector<f64>) -> [f64; 3] {
-    [0.0, 1.0, 2.0].map(|pivot| {
-        let (sin, cos) = (pivot * TAU / 3.0).sin_cos();
-        zeros[0] * cos + zeros[1] * sin
-    })
-}
-
 fn corrected(tour: &Tour, zeros: &DVector<f64>) -> Tour {
     let mut corrected = tour.clone();
-    for (angles, too_large) in corrected.angle_rad.iter_mut().zip(apart(zeros)) {
+    for (angles, too_large) in corrected
+        .angle_rad
+        .iter_mut()
+        .zip(of_three([zeros[0], zeros[1]]))
+    {
         angles.iter_mut().for_each(|angle| *angle -= too_large);
     }
     corrected

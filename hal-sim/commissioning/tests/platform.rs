@@ -3,7 +3,7 @@
 mod machine;
 mod tour;
 
-use commissioning::platform::{Evaluation, Platform, PlatformError, platform};
+use commissioning::platform::{Platform, PlatformError, platform};
 use machine::unknown;
 use std::f64::consts::TAU;
 use tour::{BODY, Body, EVALUATION, drive, pivots};
@@ -14,31 +14,34 @@ fn what_unknown_machines_carry() {
     for seed in 0..4 {
         let parameters = unknown(seed);
         let tour = drive(&parameters, 9.0);
-        let found = platform(&tour, &EVALUATION).expect("a platform");
+        let found = platform(&[tour], &EVALUATION).expect("a platform");
         let plant = &parameters.plant;
         let payload = &plant.payload;
         let mass = plant.platform_mass_kg + payload.mass_kg;
         let inertia = plant.platform_inertia_kg_m2
             + payload.inertia_kg_m2
             + payload.mass_kg * payload.eccentricity_m.powi(2);
+        // Torques are what the current sensors make of them.
+        let told = parameters.analog.current_gain.iter().sum::<f64>() / 3.0;
         let (sin, cos) = payload.direction_rad.sin_cos();
         let centre = [cos, sin].map(|part| part * payload.mass_kg * payload.eccentricity_m / mass);
-        off[0].push((found.mass_kg / mass - 1.0).abs());
-        off[1].push((found.inertia_kg_m2 / inertia - 1.0).abs());
+        off[0].push((found.mass_kg / mass / told - 1.0).abs());
+        off[1].push((found.inertia_kg_m2 / inertia / told - 1.0).abs());
         off[2].push(
-            (found.drive_inertia / (plant.motor_inertia_kg_m2 + plant.ring_inertia_kg_m2) - 1.0)
+            (found.drive_inertia / (plant.motor_inertia_kg_m2 + plant.ring_inertia_kg_m2) / told
+                - 1.0)
                 .abs(),
         );
         let [x, y] = found.moment_kg_m.map(|moment| moment / found.mass_kg);
         off[3].push(1e3 * (x - centre[0]).hypot(y - centre[1]));
-        off[4].push((found.carriages.coulomb_n / plant.guide_friction.coulomb - 1.0).abs());
+        off[4].push((found.carriages.coulomb_n / plant.guide_friction.coulomb / told - 1.0).abs());
     }
     let figures = [
-        ("mass", 0.0027, 0.0038),
-        ("inertia", 0.0063, 0.0064),
-        ("motor and ring", 0.0034, 0.0066),
-        ("centre of mass, mm", 0.15, 0.185),
-        ("friction of a carriage", 0.0114, 0.0115),
+        ("mass", 0.0030, 0.0037),
+        ("inertia", 0.0065, 0.0122),
+        ("motor and ring", 0.0018, 0.0027),
+        ("centre of mass, mm", 0.229, 0.604),
+        ("friction of a carriage", 0.0025, 0.0109),
     ];
     for ((name, median, worst), off) in figures.into_iter().zip(&mut off) {
         off.sort_by(f64::total_cmp);
@@ -65,7 +68,7 @@ fn is_right(found: &Platform) {
     assert!((found.mass_kg / mass_kg - 1.0).abs() < 2e-3, "{found:?}");
     // Smoothing a tour that turns costs a little.
     assert!(
-        (found.inertia_kg_m2 / about_centre - 1.0).abs() < 4e-3,
+        (found.inertia_kg_m2 / about_centre - 1.0).abs() < 4.7e-3,
         "{found:?}"
     );
     assert!(
@@ -86,17 +89,7 @@ fn is_right(found: &Platform) {
 #[test]
 fn a_body_by_lagrange_is_found_again() {
     let tour = BODY.tour();
-    is_right(&platform(&tour, &EVALUATION).expect("a platform"));
-    is_right(
-        &platform(
-            &tour,
-            &Evaluation {
-                drive_inertia: Some(BODY.ring_kg_m2),
-                ..EVALUATION
-            },
-        )
-        .expect("a platform"),
-    );
+    is_right(&platform(&[tour], &EVALUATION).expect("a platform"));
 }
 
 #[test]
@@ -104,7 +97,7 @@ fn tours_that_tell_nothing_are_refused() {
     let tour = BODY.tour();
     let mut short = tour.clone();
     short.torque_n_m[1].pop();
-    assert_eq!(platform(&short, &EVALUATION), Err(PlatformError::Lengths));
+    assert_eq!(platform(&[short], &EVALUATION), Err(PlatformError::Lengths));
     // Always in the same place: nothing moves, and nothing follows.
     let mut still = tour.clone();
     for angles in &mut still.angle_rad {
@@ -112,7 +105,7 @@ fn tours_that_tell_nothing_are_refused() {
         angles.fill(first);
     }
     assert!(matches!(
-        platform(&still, &EVALUATION),
+        platform(&[still], &EVALUATION),
         Err(PlatformError::Condition { .. })
     ));
     // Shaken in the middle alone: mass, inertia and rings are the same there.
@@ -122,13 +115,13 @@ fn tours_that_tell_nothing_are_refused() {
         let angles = pivots([
             0.005 * shake(3.1),
             0.005 * shake(2.3),
-            2.0 * time + 0.1 * shake(3.7),
+            2.0 * time + 0.2 * shake(3.7),
         ]);
         for (all, angle) in middle.angle_rad.iter_mut().zip(angles) {
             all[sample] = angle;
         }
     }
-    let refused = platform(&middle, &EVALUATION);
+    let refused = platform(&[middle], &EVALUATION);
     assert!(
         matches!(refused, Err(PlatformError::Condition { condition }) if condition < 1e6),
         "{refused:?}"
@@ -139,7 +132,7 @@ fn tours_that_tell_nothing_are_refused() {
         .iter_mut()
         .for_each(|torque| *torque = -*torque);
     assert!(matches!(
-        platform(&reversed, &EVALUATION),
-        Err(PlatformError::Residual { .. })
+        platform(&[reversed], &EVALUATION),
+        Err(PlatformError::Gain { .. })
     ));
 }

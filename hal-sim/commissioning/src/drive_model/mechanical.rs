@@ -118,6 +118,11 @@ pub const NAMES: [&str; 13] = [
     "moment y",
 ];
 
+/// Of mass and inertia among [`NAMES`].
+pub const MASS: usize = 9;
+/// See [`MASS`].
+pub const LOAD_INERTIA: usize = 10;
+
 /// What play gives way under the excitation, over the transmission's springs, and what it damps, over its dampers: as likely as not.
 const PLAY_GIVES: f64 = 0.2;
 const PLAY_DAMPS: f64 = 1.0;

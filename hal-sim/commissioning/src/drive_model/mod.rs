@@ -9,7 +9,7 @@ mod electrical;
 mod mechanical;
 
 pub use electrical::{Besides, COPPER_1_K, Electrical, Equations, electrical};
-pub use mechanical::{Guess, Mechanical, NAMES, Responses, mechanical};
+pub use mechanical::{Guess, LOAD_INERTIA, MASS, Mechanical, NAMES, Responses, mechanical};
 
 use crate::frequency_response::Run;
 use crate::friction::MotorConstant;

@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 pub const EVALUATION: Evaluation = Evaluation {
     track_radius_m: 0.1,
     smoothing_s: 0.02,
-    drive_inertia: None,
-    presliding: [1e-4, 2e-4],
+    gear_ratio: 50.0,
+    presliding: 2e-4,
 };
 /// How fast it turns meanwhile.
 const RATE_RAD_S: f64 = 0.9;
@@ -62,7 +62,7 @@ pub fn drive(parameters: &StageParameters, seconds: f64) -> Tour {
         if tick % EVERY == EVERY - 1 {
             for i in 0..3 {
                 tour.angle_rad[i].push(sums[i][1] - zero[i] + start[i]);
-                tour.torque_n_m[i].push(constant * sums[i][0] / parameters.analog.current_gain[i]);
+                tour.torque_n_m[i].push(constant * sums[i][0]);
             }
             sums = [[0.0; 2]; 3];
         }

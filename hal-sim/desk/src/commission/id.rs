@@ -55,8 +55,6 @@ pub const GUIDE_VISCOUS: u32 = 0x5450_0707;
 pub const GUIDE_STIFFNESS: u32 = 0x5450_0709;
 /// Of all pivots.
 pub const RING_INERTIA: u32 = 0x5450_0807;
-/// Way that a ring preslides, rad.
-pub const PRESLIDING: u32 = 0x5450_080A;
 pub const NOMINAL_SUPPLY: u32 = 0x5450_0806;
 pub const PWM_HZ: u32 = 0x5450_080B;
 

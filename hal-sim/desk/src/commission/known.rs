@@ -7,7 +7,7 @@ use super::sines::Excited;
 use crate::record::RecordError;
 use commissioning::drive_model::DriveModel;
 use commissioning::friction::MotorConstant;
-use commissioning::platform::Carriages;
+use commissioning::platform::Platform;
 
 /// What the steps have found; each uses what those before it did.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,8 +34,8 @@ pub(super) struct Known {
     pub also_carries_kg: f64,
     /// Drives, rings and platform.
     pub model: Option<DriveModel>,
-    /// Friction of the carriages along their guides.
-    pub carriages: Option<Carriages>,
+    /// What is carried, as the moves of `forces` tell it.
+    pub platform: Option<Platform>,
     /// What was recorded for it in the middle.
     pub excited: Option<Excited>,
     /// Loops as measured, with the gains in force.

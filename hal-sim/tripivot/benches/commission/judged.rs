@@ -240,9 +240,14 @@ fn mechanics(machine: &StageParameters, all: &[Done]) -> Figures {
     let square = plant.track_radius_m * plant.track_radius_m;
     let torque = torque(machine);
     let of = |name: &str, unit: &str| number(all, "identification", name, unit);
-    let drive = of("inertia of a motor with its ring", "kg m^2");
-    let mass = of("mass of platform and load", "kg");
-    let inertia = of("inertia of platform and load", "kg m^2");
+    // What is in force in the end.
+    let part = |name: &str, unit: &str| match number(all, "forces", name, unit) {
+        moved if moved.is_nan() => of(name, unit),
+        moved => moved,
+    };
+    let drive = part("inertia of a motor with its ring", "kg m^2");
+    let mass = part("mass of platform and load", "kg");
+    let inertia = part("inertia of platform and load", "kg m^2");
     let true_drive = chain.motor_inertia + chain.ring_inertia;
     let true_mass = chain.load.mass / square;
     let found = Chain {

@@ -21,7 +21,7 @@ pub(super) fn run(
     known: &mut Known,
     found: &mut Found,
 ) -> Result<(), CommissionError> {
-    let Some(carriages) = known.carriages else {
+    let Some(carriages) = known.platform.map(|platform| platform.carriages) else {
         return fail(
             "what carriages rub is found by the moves of the step `forces`",
             "begin with the step `forces`",

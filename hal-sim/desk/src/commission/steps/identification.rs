@@ -1,5 +1,6 @@
 //! The numbers of drives and platform, from multisines on one motor after the other while the platform turns in the middle, and far out.
 
+use super::carried;
 use super::friction::torque_constant;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
@@ -10,9 +11,10 @@ use crate::commission::measured_loop::place_of;
 use crate::commission::sines::{
     CENTRE, Excited, FAR_OUT, GENTLE_V, PEAK_V, Recorded, WEAKER, excite,
 };
-use commissioning::chain::{Chain, Place};
+use commissioning::chain::Place;
 use commissioning::drive_model::{
-    DriveError, DriveModel, Guess, Known as Before, Mechanical, Responses, drive_model,
+    DriveError, DriveModel, Guess, Known as Before, LOAD_INERTIA, MASS, Mechanical, Responses,
+    drive_model,
 };
 use commissioning::frequency_response::Line;
 use commissioning::friction::MotorConstant;
@@ -34,10 +36,8 @@ const MOST_LEFT: f64 = 0.2;
 /// Most that a number may be uncertain by (one standard deviation), over itself: of a winding, of the drives' inertia and mass, of the inertia.
 const WINDING: f64 = 0.05;
 const INERTIA: f64 = 0.1;
-const LOAD_INERTIA: f64 = 0.2;
+const INERTIA_OF_LOAD: f64 = 0.2;
 const RUBS: &str = "look for what rubs, gives way or is loose, and for noise on encoders and current sensors; then once more";
-/// Share of the load that is told as payload: it is all of one piece to the motors, and only a payload may have its centre elsewhere.
-const PAYLOAD: f64 = 0.5;
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
@@ -254,14 +254,14 @@ fn tell_platform(
     found.push(uncertain(
         "mass of platform and load",
         format!("{mass_kg:.2} kg"),
-        mechanical.deviations[9],
+        mechanical.deviations[MASS],
         INERTIA,
     ));
     found.push(uncertain(
         "their inertia about the platform's centre",
         format!("{:.4} kg m^2", load.inertia),
-        mechanical.deviations[10],
-        LOAD_INERTIA,
+        mechanical.deviations[LOAD_INERTIA],
+        INERTIA_OF_LOAD,
     ));
     found.push(Finding::told(
         "the motor's part of that, by the resonances",
@@ -290,31 +290,6 @@ fn tell_platform(
         "play in the gears, where these sines cross it",
         format!("makes the transmission {:.0} % softer", 100.0 * softer),
     ));
-    set_platform(bench, chain, radius_m)
-}
-
-fn set_platform(
-    bench: &mut Bench<'_>,
-    chain: &Chain,
-    radius_m: f64,
-) -> Result<(), CommissionError> {
-    let mass_kg = chain.load.mass / (radius_m * radius_m);
-    let payload_kg = PAYLOAD * mass_kg;
-    let [x_m, y_m] = chain
-        .load
-        .moment
-        .map(|moment| moment / radius_m / payload_kg);
-    let beside = payload_kg * (x_m * x_m + y_m * y_m);
-    bench.set(&[
-        (id::RING_INERTIA, chain.motor_inertia + chain.ring_inertia),
-        (id::MOTORS_INERTIA, chain.motor_inertia),
-        (id::PLATFORM_MASS, mass_kg - payload_kg),
-        (id::PLATFORM_INERTIA, chain.load.inertia - beside),
-        (id::PAYLOAD_MASS, payload_kg),
-        (id::PAYLOAD_INERTIA, 0.0),
-        (id::PAYLOAD_X, x_m * 1e3),
-        (id::PAYLOAD_Y, y_m * 1e3),
-        (id::LEARNING, IDENTIFIED_LEARNING),
-    ])?;
-    Ok(())
+    carried::set(bench, chain, radius_m)?;
+    Ok(bench.set(&[(id::LEARNING, IDENTIFIED_LEARNING)])?)
 }

@@ -1,5 +1,6 @@
 //! The steps, in the order in which they are run: first what puts no power on a motor.
 
+mod carried;
 mod ends;
 mod forces;
 mod friction;
@@ -116,7 +117,7 @@ pub static STEPS: &[Step] = &[
     },
     Step {
         name: "forces",
-        about: "moves around the middle: whether what the motors have to do for them fits the zeros of the encoders",
+        about: "moves around the middle: whether what the motors have to do for them fits the zeros of the encoders; what rings and platform weigh",
         run: forces::run,
     },
     Step {
