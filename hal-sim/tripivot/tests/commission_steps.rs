@@ -1,8 +1,10 @@
 //! Single steps of commissioning, on machines whose controllers have been told of them.
 
+use calibration::Seen;
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
 use commissioning::tuning::{Gains, MOST_MS, PLACES, Plant};
+use desk::calibrate::{Reader, Wanted, Way, measure};
 use desk::commission::{ChoiceError, Chosen, Finding, GainsError, Machine, PutError, run};
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{COUNTS_PER_TURN, SettingsFlash, StageParameters};
@@ -24,6 +26,58 @@ fn a_slow_move_that_fails_leaves_the_speed_as_it_was() {
     let failure = ran.done[0].failure.as_ref().expect("a failure");
     println!("{failure:?}");
     assert_eq!(machine.ask("VLS?").expect("it answers"), speed);
+}
+
+/// Under a frame of its user's, or another centre of rotation, a stage would go elsewhere than is meant, and be measured there.
+#[test]
+fn who_goes_to_places_is_told_of_a_frame_before_anything_moves() {
+    for (lines, words) in [
+        (["KSF HERE", "KEN HERE"], "the frame HERE is in force"),
+        (["SPI R 5", "SPI S 2"], "is at R 5 S 2 mm"),
+    ] {
+        let stage = &StageParameters::REFERENCE;
+        let mut machine = SimulatedMachine::told(stage, SettingsFlash::in_memory(), Told::Machine);
+        for line in ["CCL 1 ADVANCED", "SPA 1 0x54500900 17", "FRF"] {
+            machine.ask(line).expect("it is taken");
+        }
+        machine.delay(1.0).expect("it goes on");
+        for line in lines {
+            machine.ask(line).expect("it is taken");
+        }
+        let state = |machine: &mut SimulatedMachine| {
+            ["SVO? X", "MOV?", "SPA? 1 0x54500900", "KEN?", "SPI?"]
+                .map(|question| machine.ask(question).expect("it answers"))
+        };
+        let before = state(&mut machine);
+        let mut told = Vec::new();
+        let chosen = Chosen::only("verification").expect("a step");
+        if let Err(error) = run(&mut machine, &chosen, &mut |_| ()) {
+            told.push(error.to_string());
+        }
+        let way = Way {
+            stops: &[],
+            first: 0,
+            radius_mm: 100.0,
+            ends: &[],
+            is_from_both_sides: false,
+        };
+        if let Err(error) = measure(&mut machine, &mut Nobody, &way, &mut |_| Ok(())) {
+            told.push(error.to_string());
+        }
+        assert!(
+            told.len() == 2 && told.iter().all(|told| told.contains(words)),
+            "{told:?}"
+        );
+        assert_eq!(state(&mut machine), before);
+    }
+}
+
+struct Nobody;
+
+impl Reader for Nobody {
+    fn read(&mut self, _: &Wanted) -> Result<Seen, String> {
+        Err("nobody reads".to_owned())
+    }
 }
 
 /// A kind machine has next to no friction: it creeps for a while once its motors are off, and goes where their cogging pulls it where no jig holds it.

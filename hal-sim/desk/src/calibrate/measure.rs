@@ -153,7 +153,7 @@ pub fn measure(
     keep: &mut dyn FnMut(&Measured) -> Result<(), std::io::Error>,
 ) -> Result<(), MeasureError> {
     let mut stage = Stage {
-        bench: Bench::new(machine)?,
+        bench: Bench::in_base_frame(machine)?,
         radius_mm: way.radius_mm,
     };
     if let Err(error) = stage.bench.hold() {

@@ -52,6 +52,7 @@ pub const PAYLOAD_Y: u32 = 0x5450_0705;
 /// Of the carriages on their guides.
 pub const GUIDE_COULOMB: u32 = 0x5450_0706;
 pub const GUIDE_VISCOUS: u32 = 0x5450_0707;
+pub const GUIDE_PRESLIDING: u32 = 0x5450_0708;
 pub const GUIDE_STIFFNESS: u32 = 0x5450_0709;
 /// Of all pivots.
 pub const RING_INERTIA: u32 = 0x5450_0807;

@@ -157,7 +157,7 @@ pub fn run(
     chosen: &Chosen,
     tell: &mut dyn FnMut(&Done),
 ) -> Result<Ran, RecordError> {
-    let mut bench = Bench::new(machine)?;
+    let mut bench = Bench::in_base_frame(machine)?;
     let in_force = match chosen.keeps() {
         true => None,
         false => Some(bench.ask("SPA?")?),

@@ -129,6 +129,25 @@ pub enum RecordError {
         /// The time it had.
         patience: Duration,
     },
+    /// Places are not those of the base frame.
+    #[error(
+        "the frame {frame} is in force, and places would be others than those that are meant: `KEN ZERO` puts the base frame in force"
+    )]
+    OtherFrame {
+        /// Its name.
+        frame: String,
+    },
+    /// Places are not those of the platform's own centre.
+    #[error(
+        "the centre of rotation is at R {r_mm} S {s_mm} mm of the platform, and places would be others than those that are meant: `SPI R 0 S 0` makes it the \
+         platform's own"
+    )]
+    OtherCentre {
+        /// Along the platform's x.
+        r_mm: f64,
+        /// Along its y.
+        s_mm: f64,
+    },
     /// It has ended, and what the controller keeps is not in force again.
     #[error("{error}; and what is kept is not in force again: {refused}")]
     NotAsBefore {

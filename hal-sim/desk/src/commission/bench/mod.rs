@@ -68,6 +68,23 @@ impl<'a> Bench<'a> {
         Ok(bench)
     }
 
+    /// The same, for whoever goes to places: those of the base frame, of the platform's own centre.
+    pub fn in_base_frame(machine: &'a mut dyn Machine) -> Answered<Self> {
+        let mut bench = Self::new(machine)?;
+        let frames = bench.ask("KEN?")?;
+        let mut names = frames.lines().filter_map(|line| line.split('=').next());
+        if let Some(frame) = names.find(|name| *name != "ZERO") {
+            return Err(RecordError::OtherFrame {
+                frame: frame.to_owned(),
+            });
+        }
+        let (r_mm, s_mm) = (bench.number("SPI? R", "R")?, bench.number("SPI? S", "S")?);
+        if r_mm != 0.0 || s_mm != 0.0 {
+            return Err(RecordError::OtherCentre { r_mm, s_mm });
+        }
+        Ok(bench)
+    }
+
     /// A line, and its answer if it has one.
     pub fn answer(&mut self, line: &str) -> Answered<Option<String>> {
         self.machine.ask(line)

@@ -43,8 +43,6 @@ const ROWS: usize = 2_000;
 const EVERY: usize = 2;
 /// Shorter than a move's acceleration.
 const SMOOTHING_S: f64 = 0.004;
-/// Way that a carriage preslides, track radii: as on the reference stage.
-const GUIDES_PRESLIDING: f64 = 2e-4;
 /// Most that a zero may be off the mean of all, and that it may be uncertain by (one standard deviation), rad: one that is off by 22 mrad is 15 off
 /// the mean, and moves the platform by 1.5 mm. Sound machines are told to be off by up to 8, and to be known to 2.
 const MOST_OFF_RAD: f64 = 0.015;
@@ -60,11 +58,12 @@ pub(super) fn run(
 ) -> Result<(), CommissionError> {
     look_slowly(bench)?;
     let tours = tours(bench, known)?;
+    let track_radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
     let how = Evaluation {
-        track_radius_m: 1e-3 * bench.parameter(id::TRACK_RADIUS)?,
+        track_radius_m,
         smoothing_s: SMOOTHING_S,
         gear_ratio: bench.parameter(id::of(id::GEAR_RATIO, 0))?,
-        presliding: GUIDES_PRESLIDING,
+        presliding: 1e-6 * bench.parameter(id::GUIDE_PRESLIDING)? / track_radius_m,
     };
     let zeros = match zero_errors(&tours, &how) {
         Ok(zeros) => zeros,
