@@ -13,9 +13,12 @@ const PAYLOAD: f64 = 0.5;
 /// Most that moves may tell what a pivot moves in the middle off what sines tell, over itself, for their parts to be used.
 const MOST_APART: f64 = 0.1;
 /// Standard deviations of what moves tell, over itself: of the mass over the inertia of a drive, and of the inertia of the load. Friction and gears make them,
-/// not noise, so that nothing in the records tells them: they are those of ten unknown machines.
+/// not noise, so that nothing in the records tells them: they are those of 14 unknown machines.
 const RATIO_BY_MOVES: f64 = 0.01;
 const INERTIA_BY_MOVES: f64 = 0.02;
+/// The same of what sines tell, besides what they tell of that: a model of springs is not all that a machine is. Of 117 unknown machines.
+const RATIO_BY_SINES: f64 = 0.01;
+const INERTIA_BY_SINES: f64 = 0.015;
 
 /// Tells the controller, which takes it at rest and between motions.
 pub(super) fn set(
@@ -114,13 +117,16 @@ fn together(sines: &Mechanical, moved: &Chain) -> Chain {
         [ratio(chain), ratio(moved)],
         [
             // What one has more, the other has less.
-            sines.drive_inertia_deviation + sines.deviations[MASS],
+            RATIO_BY_SINES.hypot(sines.drive_inertia_deviation + sines.deviations[MASS]),
             RATIO_BY_MOVES,
         ],
     );
     let inertia = mean(
         [chain.load.inertia, moved.load.inertia],
-        [sines.deviations[LOAD_INERTIA], INERTIA_BY_MOVES],
+        [
+            INERTIA_BY_SINES.hypot(sines.deviations[LOAD_INERTIA]),
+            INERTIA_BY_MOVES,
+        ],
     );
     // It is a line over the inertia of the drive.
     let moves = |drive: f64| in_the_middle(&with(chain, drive, ratio * drive, inertia));
@@ -169,16 +175,17 @@ mod tests {
 
     /// What torques are off stays out, and the motor keeps what the resonances tell of it.
     #[test]
-    fn parts_are_those_of_whichever_is_surer_and_their_sum_that_of_the_sines() {
+    fn parts_are_by_both_or_by_moves_where_sines_do_not_know_and_their_sum_is_that_of_the_sines() {
         let ratio = |chain: &Chain| chain.load.mass / (chain.motor_inertia + chain.ring_inertia);
         for more in [0.98, 1.02] {
             let moved = with(&CHAIN, more * 0.0238, more * 0.032, more * 0.0237);
-            for (of_parts, its) in [(1e-6, &CHAIN), (1.0, &moved)] {
+            for (of_parts, share) in [(0.0, 0.5), (1.0, 1.0)] {
                 let found = together(&sines(of_parts), &moved);
                 let sum = in_the_middle(&found) / in_the_middle(&CHAIN);
                 assert!((sum - 1.0).abs() < 1e-9, "{found:?}");
-                assert!((ratio(&found) / ratio(its) - 1.0).abs() < 1e-5);
-                assert!((found.load.inertia / its.load.inertia - 1.0).abs() < 1e-3);
+                let by_moves =
+                    (ratio(&found) / ratio(&CHAIN)).ln() / (ratio(&moved) / ratio(&CHAIN)).ln();
+                assert!((by_moves - share).abs() < 1e-3, "{by_moves}");
                 assert_eq!(found.motor_inertia, CHAIN.motor_inertia);
             }
         }
