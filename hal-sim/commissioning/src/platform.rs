@@ -3,7 +3,7 @@
 //! Along the tour every ring's torque is linear in what is sought:
 //!
 //! ```text
-//! T (1 - g) = J p'' + Jm A (sin(n p + a))'' + Tc z + b p' + T0 + J^-T (M q'' + forces of the turning moment + (F z_rho + c rho') drho/dq + k q)
+//! T (1 - g) = J p'' + Jm A (sin(n p + a))'' + Tc z + b p' + T0 + J^-T (M q'' + forces of the turning moment + (F z_rho + d z_rho' + c rho') drho/dq + k q)
 //! ```
 //!
 //! g is how much more a torque is than it is told, beside the mean of all three: of current sensors and motor constants. A mean that is free would make all
@@ -12,7 +12,8 @@
 //!
 //! z are the contacts that rub, -1 to 1. Instants at which a ring stands or creeps do not count: there friction is none of these. Of rings z is the sign of the
 //! rate, then; of carriages, which turn back while all rings go on, it is that but for a way of presliding after each reversal (Dahl's). A sign alone would be
-//! early there, and what it is early by is like an inertia.
+//! early there, and what it is early by is like an inertia. What a contact damps while it builds up, d, is early as well, and makes up for a presliding that
+//! is not as it was told (LuGre's model: Canudas de Wit, Olsson, Astrom and Lischinsky, "A New Model for Control of Systems with Friction", 1995, equation 3).
 //!
 //! M is made of mass, inertia and first moment of platform and payload; F and c are the friction along the guides, k the cables' stiffness, p the ring angles,
 //! q the pose. Angles give the pose by the direct kinematics ([`kinematics::direct()`]); all signals are smoothed alike before anything is
@@ -132,7 +133,7 @@ pub const MOST_CONDITION: f64 = 100.0;
 pub const MOST_RESIDUAL: f64 = 0.25;
 /// A torque that is more off what it is told is refused: current sensors are within some percent.
 pub const MOST_GAIN: f64 = 0.1;
-const UNKNOWNS: usize = 25;
+const UNKNOWNS: usize = 26;
 /// Inertia of a motor and its ring.
 const DRIVE: usize = 4;
 /// Friction along a guide times the track's radius: N m, and N m s.
@@ -142,6 +143,8 @@ const GUIDE_VISCOUS: usize = 16;
 const GAINS: usize = 17;
 /// The first of the uneven gears': cosine and sine of the first ring's, then of the next.
 const GEARS: usize = 19;
+/// What a contact of a carriage damps while it builds up, N m s.
+const CONTACT_DAMPING: usize = 25;
 
 /// What is carried, by linear least squares: of one tour, or of several with the same load.
 ///
@@ -283,6 +286,9 @@ fn add_rows(
         let rubs = Rubs {
             rings: ways.map(f64::signum),
             carriages: [0, 1, 2].map(|i| carriages[i][at]),
+            carriage_rates: carriages
+                .each_ref()
+                .map(|contact| (contact[at + 1] - contact[at - 1]) / (2.0 * tour.step_s)),
         };
         let mut matrix = equations(&poses[at - 1..=at + 1], &rubs, tour.step_s)
             .ok_or(PlatformError::NoPose { sample: at })?;
@@ -342,6 +348,8 @@ fn poses(tour: &Tour) -> Result<Vec<Vector3<f64>>, PlatformError> {
 struct Rubs {
     rings: [f64; 3],
     carriages: [f64; 3],
+    /// By time, 1/s.
+    carriage_rates: [f64; 3],
 }
 
 /// Contacts of the three carriages, -1 to 1: `dz/ds = 1 - z sign(ds)` by the way s over the presliding.
@@ -400,12 +408,13 @@ fn equations(poses: &[Vector3<f64>], rubs: &Rubs, step_s: f64) -> Option<[[f64; 
     // A moment along the base's x or y: M q'' and the centrifugal force of it.
     let along_x = Vector3::new(-turning, a.z, a.y);
     let along_y = Vector3::new(-a.z, -turning, -a.x);
-    let (mut rubbing, mut sliding) = (Vector3::zeros(), Vector3::zeros());
-    for (guide, contact) in guides.iter().zip(&rubs.carriages) {
+    let [mut rubbing, mut damping, mut sliding] = [Vector3::zeros(); 3];
+    for (i, guide) in guides.iter().enumerate() {
         let offset_by_pose = Vector3::new(-guide.sin, guide.cos, -guide.projection);
         let by_pose = -(offset_by_pose * (guide.offset / guide.cosine))
             - Vector3::new(guide.cos, guide.sin, guide.offset);
-        rubbing += by_pose * *contact;
+        rubbing += by_pose * rubs.carriages[i];
+        damping += by_pose * rubs.carriage_rates[i];
         sliding += by_pose * by_pose.dot(&twist);
     }
     let columns = [
@@ -415,8 +424,9 @@ fn equations(poses: &[Vector3<f64>], rubs: &Rubs, step_s: f64) -> Option<[[f64; 
         to_rings * (along_y * cos - along_x * sin),
         Vector3::from(accelerations),
     ];
-    let [guide, cable, guide_viscous] = [
+    let [guide, contact_damping, cable, guide_viscous] = [
         to_rings * rubbing,
+        to_rings * damping,
         to_rings * Vector3::new(now.x, now.y, 0.0),
         to_rings * sliding,
     ];
@@ -428,6 +438,7 @@ fn equations(poses: &[Vector3<f64>], rubs: &Rubs, step_s: f64) -> Option<[[f64; 
         row[5 + i] = rubs.rings[i];
         row[8 + i] = rates[i];
         row[GUIDE] = guide[i];
+        row[CONTACT_DAMPING] = contact_damping[i];
         row[12] = cable[i];
         row[13 + i] = 1.0;
         row[GUIDE_VISCOUS] = guide_viscous[i];

@@ -47,10 +47,10 @@ fn those_of_a_body_by_lagrange_are_found() {
 }
 
 /// What smoothing a tour that turns costs, and a tenth more.
-const MOST_OFF_LAGRANGE_RAD: f64 = 3.8e-4;
+const MOST_OFF_LAGRANGE_RAD: f64 = 2.6e-5;
 /// The worst of the machines tried here, and a tenth more. A single tour repeats no angle, and gears, motors and frames that are not as drawn have their
 /// part, which the deviation that is told does not know.
-const MOST_OFF_RAD: f64 = 9.4e-3;
+const MOST_OFF_RAD: f64 = 8.7e-3;
 
 #[test]
 fn those_of_unknown_machines_are_found() {

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 pub const EVALUATION: Evaluation = Evaluation {
     track_radius_m: 0.1,
-    smoothing_s: 0.02,
+    smoothing_s: 0.005,
     gear_ratio: 50.0,
     presliding: 2e-4,
 };

@@ -54,30 +54,25 @@ impl MeasuredLoop {
         peak_v: f64,
         model: &DriveModel,
     ) -> Result<Self, CommissionError> {
+        let place = place_of(bench, &spot)?;
         let excited = excite(bench, &spot, (SETS, peak_v), Recorded::Loop)?;
-        Self::new(bench, &excited, spot, model)
+        Ok(Self::new(&excited, (spot, &place), model))
     }
 
     /// From what was recorded.
-    pub fn new(
-        bench: &mut Bench<'_>,
-        excited: &Excited,
-        spot: Spot,
-        model: &DriveModel,
-    ) -> Result<Self, CommissionError> {
-        let place = place_of(bench, &spot)?;
+    pub fn new(excited: &Excited, (spot, place): (Spot, &Place), model: &DriveModel) -> Self {
         let lines = closed_loop(
             &excited.runs,
             &excited.lines,
             excited.peak_v,
-            (&model.electrical, &model.mechanical.excited, &place),
+            (&model.electrical, &model.mechanical.excited, place),
             &Timing::STAGE,
         );
-        Ok(Self {
+        Self {
             spot,
             peak_v: excited.peak_v,
             lines,
-        })
+        }
     }
 
     /// Largest singular value of the sensitivity over all lines.

@@ -9,6 +9,7 @@ use crate::commission::known::Known;
 use crate::commission::measured_loop::{MeasuredLoop, plot};
 use crate::commission::servo_gains;
 use crate::commission::sines::{CENTRE, NEAR_RIM, PEAK_V};
+use commissioning::chain::Place;
 
 /// Most that two ways of measuring the same may differ by.
 const MOST_OFF: f64 = 0.2;
@@ -32,7 +33,9 @@ pub(super) fn run(
     let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
     for spot in [CENTRE, NEAR_RIM] {
         let measured = match &excited {
-            Some(excited) if spot == CENTRE => MeasuredLoop::new(bench, excited, spot, &model)?,
+            Some(excited) if spot == CENTRE => {
+                MeasuredLoop::new(excited, (spot, &Place::centre()), &model)
+            }
             _ => MeasuredLoop::measure(bench, spot, peak_v, &model)?,
         };
         found.push(told(&measured));
