@@ -23,7 +23,7 @@ pub struct ZeroErrors {
 
 /// Steps of the search.
 const STEPS: usize = 20;
-/// Parts of the tours that err each by itself: in commissioning a move each.
+/// Parts of the rows that err each by itself: in commissioning as many as there are moves.
 const PARTS: usize = 96;
 /// Step of an angle for derivatives, rad.
 const STEP_RAD: f64 = 1e-4;
@@ -53,7 +53,7 @@ pub fn zero_errors(tours: &[Tour], how: &Evaluation) -> Result<ZeroErrors, Platf
     })
 }
 
-/// The larger deviation of the two, from how much each part of the tours pulls at them: what gears, motors and friction leave over is alike for a whole move,
+/// The larger deviation of the two, from how much each part of the tours pulls at them: what gears, motors and friction leave over is alike for about a move,
 /// so that single rows would promise too much (the covariance of clustered errors, as in Cameron and Miller, "A Practitioner's Guide to Cluster-Robust
 /// Inference", 2015, section II).
 fn deviation(found: &Minimum, left: impl Fn(&DVector<f64>) -> DVector<f64>) -> f64 {

@@ -46,6 +46,61 @@ fn those_of_a_body_by_lagrange_are_found() {
     }
 }
 
+/// Torques of something else beside: told are what an uneven gear asks of its motor, what friction of a ring that creeps takes, and what two current sensors
+/// are off.
+#[derive(Clone, Copy, Debug, Default)]
+struct Beside {
+    gear_kg_m2_rad: f64,
+    creeping_n_m: f64,
+    gains: [f64; 2],
+}
+
+impl Beside {
+    fn tour(&self) -> Tour {
+        let mut tour = BODY.tour();
+        let step_s = tour.step_s;
+        for (i, torques) in tour.torque_n_m.iter_mut().enumerate() {
+            let angles = &tour.angle_rad[i];
+            let gear = |k: usize| (EVALUATION.gear_ratio * angles[k] + i as f64).sin();
+            let gain = [0.0, self.gains[0], self.gains[1]][i];
+            for k in 1..angles.len() - 1 {
+                let bend = (gear(k + 1) - 2.0 * gear(k) + gear(k - 1)) / (step_s * step_s);
+                let rate = (angles[k + 1] - angles[k - 1]) / (2.0 * step_s);
+                torques[k] += self.gear_kg_m2_rad * bend;
+                if rate.abs() < 0.1 {
+                    torques[k] += self.creeping_n_m.copysign(rate);
+                }
+                torques[k] *= 1.0 + gain;
+            }
+        }
+        tour
+    }
+}
+
+#[test]
+fn gears_creeping_rings_and_current_sensors_are_no_wrong_zeros() {
+    let none = Beside::default();
+    for beside in [
+        Beside {
+            gear_kg_m2_rad: 0.015 * 280e-6,
+            ..none
+        },
+        Beside {
+            creeping_n_m: 0.3,
+            ..none
+        },
+        Beside {
+            gains: [0.03, -0.02],
+            ..none
+        },
+    ] {
+        let found = zero_errors(&[beside.tour()], &EVALUATION).expect("a tour");
+        let off = off_rad(found.too_large_rad, [0.0; 3]);
+        println!("{beside:?}: {off:.2e} rad off");
+        assert!(off < MOST_OFF_LAGRANGE_RAD, "{beside:?}: {found:?}");
+    }
+}
+
 /// What smoothing a tour that turns costs, and a tenth more.
 const MOST_OFF_LAGRANGE_RAD: f64 = 2.6e-5;
 /// The worst of the machines tried here, and a tenth more. A single tour repeats no angle, and gears, motors and frames that are not as drawn have their

@@ -62,17 +62,14 @@ pub(super) fn set_parts(
     );
     let apart = in_the_middle(&moved) / in_the_middle(&sines.chain) - 1.0;
     let is_used = apart.abs() < MOST_APART;
+    let besides = if is_used {
+        ""
+    } else {
+        ": its parts are not used"
+    };
     found.push(Finding::told(
         "what a pivot moves in the middle, by these moves beside the sines",
-        format!(
-            "{:+.1} %{}",
-            100.0 * apart,
-            if is_used {
-                ""
-            } else {
-                ": its parts are not used"
-            }
-        ),
+        format!("{:+.1} %{besides}", 100.0 * apart),
     ));
     if !is_used {
         return Ok(());
