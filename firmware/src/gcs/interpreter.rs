@@ -1,6 +1,7 @@
 //! What all connections share.
 
 use super::calibration::GatheredCalibration;
+use super::condition::DriveWatches;
 use super::connections::Connections;
 use super::error::ErrorCode;
 use super::events::{BoardNotice, Crash, Event, EventLog};
@@ -47,6 +48,7 @@ pub struct Interpreter {
     pub(super) events: EventLog,
     pub(super) statistics: Statistics,
     pub(super) servo_reports: ServoReports,
+    pub(super) drive_watches: DriveWatches,
     pub(super) heartbeat: Heartbeat,
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
@@ -81,6 +83,7 @@ impl Interpreter {
             events: EventLog::new(),
             statistics: Statistics::default(),
             servo_reports: ServoReports::default(),
+            drive_watches: DriveWatches::default(),
             heartbeat: Heartbeat::default(),
             connections: Connections::default(),
             jogs: Jogs::default(),

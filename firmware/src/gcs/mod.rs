@@ -41,6 +41,7 @@
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
 //! | `self_test` | what the board reads about itself |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
+//! | `condition` | whether motors and current sensors are still what the parameters say |
 //! | `jog`, `ownership` | whose constant velocities are in force; who alone may command |
 //! | `recovery` | the way back of a stage that was found out of its reach |
 //!
@@ -53,6 +54,7 @@
 
 mod arguments;
 mod calibration;
+mod condition;
 mod connection_number;
 mod connections;
 mod error;

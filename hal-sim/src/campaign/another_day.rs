@@ -18,7 +18,7 @@ use crate::random::Random;
 
 /// The machine then. Its seed, of the noise, is another one.
 #[must_use]
-pub(super) fn on_another_day(stage: &StageParameters, seed: u64) -> StageParameters {
+pub fn on_another_day(stage: &StageParameters, seed: u64) -> StageParameters {
     let mut random = Random::new(!seed);
     let mut then = *stage;
     then.seed = random.bits();

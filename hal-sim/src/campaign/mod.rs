@@ -55,6 +55,7 @@ mod truth;
 mod verdict;
 mod watch;
 
+pub use another_day::on_another_day;
 pub use bound::MARGIN;
 pub use commissioned::{Commissioned, CommissionedError, SETTINGS};
 pub use effect::Effect;
@@ -64,7 +65,7 @@ pub use outcome::{Differs, End, Outcome};
 pub use rest::ToRest;
 pub use rows::csv;
 pub use run::run;
-pub use scenario::Scenario;
+pub use scenario::{Scenario, machine, told};
 pub use table::table;
 pub use totals::{Spread, Total, totals};
 pub use verdict::{Measure, Problem};
@@ -73,7 +74,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use crate::random::Random;
-use another_day::on_another_day;
 use inputs::Inputs;
 
 /// What a campaign is to be.

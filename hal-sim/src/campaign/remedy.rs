@@ -6,7 +6,8 @@ const NOTHING: &str = "nothing: it is bridged, and shorter than what matters";
 const AT_REST: &str = "nothing while it rests: it is found when the pivot has to move";
 const SECOND_HEAD: &str = "a second head on the ring, or a sensor of the platform";
 const PLATFORM: &str = "a sensor of the platform";
-const SERVICE: &str = "a test at service: force against position over a turn";
+const MONITORED: &str =
+    "nothing, if it is large: it is told after some seconds of fast motion (`EVT?`)";
 
 /// One for each kind, in the order of [`NAMES`].
 pub(super) const REMEDIES: [&str; NAMES.len()] = [
@@ -43,10 +44,10 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     "nothing: seldom enough not to be told",
     "a count of bad frames that somebody looks at",
     NOTHING,
-    "a second current sensor, or a sum of currents and the supply's",
-    "a second divider",
-    SERVICE,
-    SERVICE,
+    MONITORED,
+    MONITORED,
+    MONITORED,
+    MONITORED,
     AT_REST,
     PLATFORM,
     "a sensor of the load",

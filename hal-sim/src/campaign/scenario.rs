@@ -151,8 +151,9 @@ fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     }
 }
 
-/// A machine as a workshop builds it, with every imperfection, plugged in as it belongs.
-fn machine(drawn: u64, seed: u64) -> StageParameters {
+/// A machine as a workshop builds it, with every imperfection, plugged in as it belongs. `seed` is that of its noise.
+#[must_use]
+pub fn machine(drawn: u64, seed: u64) -> StageParameters {
     let mut machine = unknown(drawn);
     machine.plant.imperfections = Imperfections::ALL;
     StageParameters {
@@ -164,7 +165,8 @@ fn machine(drawn: u64, seed: u64) -> StageParameters {
 
 /// What a controller is told that was put into service on this machine: zeros and directions of the encoders, drives, platform, load, and
 /// gains that its resonances bear.
-fn told(stage: &StageParameters) -> Parameters {
+#[must_use]
+pub fn told(stage: &StageParameters) -> Parameters {
     let machine = Told::Machine.parameters(&Parameters::REFERENCE, stage);
     let fitted = with_motion_fitted(&with_gains_fitted(&machine, stage));
     with_wiring_told(&fitted, stage)

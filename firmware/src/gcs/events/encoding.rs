@@ -4,6 +4,7 @@ use super::board_notice::BoardNotice;
 use super::crash::{CRASH_FILE_BYTES, Crash, CrashCause};
 use super::event::{Event, START_CAUSES};
 use crate::fault::{FAULT_DESCRIPTIONS, Fault};
+use crate::gcs::condition::DriveQuantity;
 
 /// Stands for no pivot, and for a cause that has no number.
 const NONE: u8 = 0xFF;
@@ -74,6 +75,10 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         Event::Recovered => bare(21),
         Event::RecoveryGivenUp => bare(22),
         Event::FramesBridged(pivot, count) => (28, [*pivot, 0], [u32::from(*count), 0, 0]),
+        Event::Drive(pivot, quantity, is_off, value) => {
+            let what = *quantity as u8;
+            (32, [*pivot, what], [value.to_bits(), u32::from(*is_off), 0])
+        }
         Event::EncoderStepped(pivot, step_rad) => (31, [*pivot, 0], [step_rad.to_bits(), 0, 0]),
         Event::CalibratedTemperature(is_off, over_k) => {
             (29, [u8::from(*is_off), 0], [over_k.to_bits(), 0, 0])
@@ -137,6 +142,10 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         22 => Event::RecoveryGivenUp,
         28 => Event::FramesBridged(first, a as u16),
         31 => Event::EncoderStepped(first, f32::from_bits(a)),
+        32 => {
+            let quantity = *DriveQuantity::ALL.get(usize::from(second))?;
+            Event::Drive(first, quantity, b != 0, f32::from_bits(a))
+        }
         29 => Event::CalibratedTemperature(first != 0, f32::from_bits(a)),
         _ => return None,
     };

@@ -3,6 +3,7 @@
 use super::board_notice::BoardNotice;
 use super::crash::Crash;
 use crate::fault::Fault;
+use crate::gcs::condition::DriveQuantity;
 use core::fmt;
 
 /// What may start a controller. Unasked: the watchdog, the program, the supply, the clock. Asked for: power, the reset pin, `RBT`. The
@@ -49,6 +50,8 @@ pub(in crate::gcs) enum Event {
     FramesBridged(u8, u16),
     /// The reading of an encoder has stepped by so much, rad, as no pivot does; pivot from 0.
     EncoderStepped(u8, f32),
+    /// Something of the drive of a pivot, counted from 0, is no more what the parameters say, or is again; and what it is now.
+    Drive(u8, DriveQuantity, bool, f32),
     /// Settings were written to flash.
     Stored,
     /// They could not be: the error's number.
@@ -107,6 +110,33 @@ impl fmt::Display for Event {
                     "encoder stepped by {step_urad:.1} urad, pivot {}: it slipped, or a blow",
                     pivot + 1
                 )
+            }
+            Self::Drive(pivot, quantity, is_off, value) => {
+                match (quantity, is_off) {
+                    (DriveQuantity::MotorConstant, true) => write!(
+                        f,
+                        "motor constant {value:.2} of its parameter: a weak motor, or the supply's sensor"
+                    ),
+                    (DriveQuantity::MotorConstant, false) => {
+                        f.write_str("motor constant as its parameter says again")
+                    }
+                    (DriveQuantity::CurrentOffset, true) => {
+                        write!(
+                            f,
+                            "current sensor reads some {value:+.1} A besides what flows"
+                        )
+                    }
+                    (DriveQuantity::CurrentOffset, false) => {
+                        f.write_str("current sensor reads what flows again")
+                    }
+                    (DriveQuantity::Friction, true) => {
+                        write!(f, "friction {value:.1} N m over its parameters")
+                    }
+                    (DriveQuantity::Friction, false) => {
+                        f.write_str("friction as its parameters say again")
+                    }
+                }?;
+                write!(f, ", pivot {}", pivot + 1)
             }
             Self::HostSilent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
             Self::Stored => f.write_str("settings kept"),

@@ -85,6 +85,9 @@ impl Interpreter {
         if wanted.learnt != self.parameters.learnt {
             self.servo_reports.outdate();
         }
+        if wanted.drives != self.parameters.drives {
+            self.drive_watches.restart();
+        }
         self.rated_limits = highest(&self.rated_limits, &wanted.limits);
         self.previous_parameters = core::mem::replace(&mut self.parameters, wanted);
         self.note_looseness();

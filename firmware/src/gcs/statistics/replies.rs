@@ -32,6 +32,7 @@ impl Interpreter {
         reply.line(format_args!("COMMANDS={}", s.commands))?;
         reply.line(format_args!("REFUSED={}", s.refused))?;
         self.reply_learnt(&mut reply)?;
+        self.reply_conditions(&mut reply)?;
         reply.line(format_args!("LOOSENED={}", self.loosened))?;
         reply.end()
     }

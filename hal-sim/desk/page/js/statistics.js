@@ -27,6 +27,10 @@ const PIVOT_NAMES = {
     value.split(" ").map((part, i) => `${part} ${LEARNT_UNITS[i]}`).join(", ")],
   INTEGRAL: ["integral", (value) => `${value} V`],
   CURRENT: ["motor current by the model", (value) => `${value} A`],
+  DRIVE: ["motor constant over its parameter; current sensor, friction besides what they should", (value) => {
+    const [ratio, offset, friction] = value.split(" ");
+    return `${ratio}; ${offset} A, ${friction} N m`;
+  }],
 };
 
 function named(name) {

@@ -69,6 +69,20 @@ pub(super) const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "drive-changes",
+        title: "Drives that change",
+        group: Group::Faults,
+        about: "What condition monitoring tells of a drive that is no more what its parameters say, and when. Machines as a workshop builds \
+                them, with every imperfection, whose controllers were told their numbers, on another day (windings up to 60 K warmer, friction a quarter more \
+                or less, magnets 3 % and supply 2 % off): random moves all over the disk at 50 to 200 mm/s; after 6 s something changes, at \
+                pivot 2, in a tenth of a second, and is waited for for 30 s. What ends in a fault before it is told, and what else was told of a drive.",
+        command: "MACHINES=32 cargo bench -p tests --bench drive_changes",
+        short: Some("MACHINES=2 cargo bench -p tests --bench drive_changes"),
+        kind: Kind::Deterministic,
+        seconds: 1_000,
+        without: &[],
+    },
+    Section {
         name: "upsets",
         title: "Bits that flip in the chip's RAM",
         group: Group::Faults,
