@@ -158,6 +158,20 @@ impl Plant {
             .concat()
     }
 
+    /// What seldom comes together: springs and dampers off, and windings warm at work.
+    #[must_use]
+    pub fn as_they_seldom_are(
+        model: &DriveModel,
+        chain: &Chain,
+        places: &[[f64; 2]],
+        timing: &Timing,
+    ) -> Vec<Self> {
+        let at_work = &model.electrical.each_ref().map(Electrical::at_work);
+        (chain.as_it_may_be(&model.mechanical.uncertainty()).iter())
+            .flat_map(|chain| Self::at_places(at_work, chain, places, timing))
+            .collect()
+    }
+
     /// As it was measured, at the lines alone: to see what margins a measurement gives at gains that the model was tuned for.
     #[must_use]
     pub fn from_lines(lines: &[LoopLine], inertia: [f64; 3], timing: &Timing) -> Self {

@@ -108,14 +108,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// With a load, as it was found, and as it may be. The controller schedules its gains by the load that it knows.
-    fn with_load(&self, chain: &Chain, places: &[[f64; 2]]) -> [Vec<Plant>; 2] {
+    /// With a load, as it was found, as it may be, and as it seldom is. The controller schedules its gains by the load that it knows.
+    fn with_load(&self, chain: &Chain, places: &[[f64; 2]]) -> [Vec<Plant>; 3] {
         let (model, timing) = (self.model, &Timing::STAGE);
         let at = |chain| Plant::at_places(&model.electrical, chain, places, timing);
         let known = at(&self.chain);
         [
             at(chain),
             Plant::as_they_may_be(model, chain, places, timing),
+            Plant::as_they_seldom_are(model, chain, places, timing),
         ]
         .map(|plants| {
             (plants.into_iter().zip(known.iter().cycle()))
@@ -124,15 +125,15 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// With what is on it, and with what it carries at times besides: as it was found, and as it may be.
-    fn plants(&self, places: &[[f64; 2]]) -> [Vec<Plant>; 2] {
-        let [mut found, mut may_be] = self.with_load(&self.chain, places);
+    /// With what is on it, and with what it carries at times besides: as it was found, as it may be, and as it seldom is.
+    fn plants(&self, places: &[[f64; 2]]) -> [Vec<Plant>; 3] {
+        let mut plants = self.with_load(&self.chain, places);
         if let Some(heavier) = &self.heavier {
-            let [heavier, heavier_may_be] = self.with_load(heavier, places);
-            found.extend(heavier);
-            may_be.extend(heavier_may_be);
+            for (plants, heavier) in plants.iter_mut().zip(self.with_load(heavier, places)) {
+                plants.extend(heavier);
+            }
         }
-        [found, may_be]
+        plants
     }
 
     /// What gains are predicted to be with what it carries at times besides.
@@ -153,15 +154,14 @@ impl<'a> Search<'a> {
 
     /// All that gains have to be sound on.
     fn all(&self) -> Vec<Plant> {
-        let [as_found, as_it_may_be] = self.plants(&PLACES);
-        [as_found, as_it_may_be, self.measured.clone()].concat()
+        [self.plants(&PLACES).concat(), self.measured.clone()].concat()
     }
 
     /// Gains of the search, slowed until the model at every place and the loops as they were measured keep Ms; their worst rejection.
     fn sought(&self) -> Option<(Gains, f64)> {
         let centre = Place::centre();
-        let [as_found, as_it_may_be] = self.plants(&PLACES[..SEARCHED]);
-        let elsewhere = self.plants(&PLACES[SEARCHED..]).concat();
+        let [as_found, as_it_may_be, seldom] = self.plants(&PLACES[..SEARCHED]);
+        let elsewhere = [seldom, self.plants(&PLACES[SEARCHED..]).concat()].concat();
         let tuned = tune(
             Sought {
                 found: &[&as_found[..], &self.measured].concat(),
