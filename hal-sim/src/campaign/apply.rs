@@ -107,7 +107,11 @@ impl Injection {
             Self::SupplyBias(share) if age == 0 => {
                 host.stage.analog_inputs().supply_gain *= share;
             }
-            Self::Fading(_) | Self::Friction(_) | Self::GuideJam | Self::LooseCoupling(_) => {
+            Self::Fading(_)
+            | Self::Friction(_)
+            | Self::GuideJam
+            | Self::LooseCoupling(_)
+            | Self::Softer(_) => {
                 self.push(&mut host.stage.plant, axis, age);
             }
             Self::LoadLost if age == 0 => host.stage.plant.set_payload(Payload::NONE),
@@ -154,6 +158,7 @@ impl Injection {
                 external.guide_jammed_at_m[axis] = Some(plant.rhos_m()[axis]);
             }
             Self::LooseCoupling(rad) if age == 0 => external.loose_rad[axis] = rad,
+            Self::Softer(share) => external.lost_stiffness[axis] = share * risen(age),
             Self::Fading(share) => external.lost_torque[axis] = share * risen(age),
             Self::Friction(torque_n_m) => {
                 external.more_friction_n_m[axis] = torque_n_m * risen(age);

@@ -95,13 +95,15 @@ impl Injection {
             45 => Self::CurrentStuck,
             46 => Self::SupplyStuck,
             47 => Self::NewerSettings,
-            _ => {
+            48 => {
                 // From what hardly moves it against its friction on, to what is too fast at once.
                 let plant = &stage.plant;
                 let friction_n_m = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
                 let more_n_m = 0.3 * random.between(0.0, 5.0).exp();
                 Self::PushedExcited((friction_n_m + more_n_m) * random.sign())
             }
+            // Its resonance falls to 0.95 to 0.3 of what it was.
+            _ => Self::Softer(random.between(0.1, 0.9)),
         }
     }
 }

@@ -413,6 +413,7 @@ impl Injection {
             | Self::Friction(_)
             | Self::GuideJam
             | Self::LooseCoupling(_)
+            | Self::Softer(_)
             | Self::LoadLost
             | Self::ExchangedLines
             | Self::Gain(_) => MOTION,

@@ -106,6 +106,8 @@ pub enum Injection {
     NewerSettings,
     /// With the servo off and a motor excited, a ring is pushed with this torque, N m, until the motors brake.
     PushedExcited(f64),
+    /// A transmission loses this share of its stiffness in a tenth of a second.
+    Softer(f64),
 }
 
 /// What breaks in the same tick as an encoder falls silent.
@@ -122,7 +124,7 @@ pub enum Other {
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 49] = [
+pub const NAMES: [&str; 50] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -172,6 +174,7 @@ pub const NAMES: [&str; 49] = [
     "supply sensor stuck",
     "settings newer",
     "pushed while excited",
+    "transmission softer",
 ];
 
 /// One of so many ticks does not come.
@@ -254,6 +257,7 @@ impl Injection {
             Self::SupplyStuck => 46,
             Self::NewerSettings => 47,
             Self::PushedExcited(_) => 48,
+            Self::Softer(_) => 49,
         }
     }
 

@@ -60,4 +60,5 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     "a second divider: it is found after two seconds of rest, and at servo on",
     NOTHING,
     "nothing: it was pushed no further than it may be",
+    "nothing: it rings less than the threshold; `tripivot frf` at service",
 ];

@@ -50,6 +50,8 @@ pub struct External {
     pub more_friction_n_m: [f64; AXES],
     /// How far each coupling has come loose, to either side, rad at the ring.
     pub loose_rad: [f64; AXES],
+    /// Share of each transmission's stiffness that is gone: a belt or a coupling that is about to go, and a resonance that falls.
+    pub lost_stiffness: [f64; AXES],
 }
 
 /// Stiffness of what jams a ring, N m/rad, and its damping, about half of what lets the ring not swing.
@@ -197,12 +199,14 @@ impl Dynamics {
     }
 
     /// What the transmission of a drive passes on to its ring, N m, and its cyclic error there.
-    pub fn transmission(&self, i: usize, state: &State, loose_rad: f64) -> (f64, CyclicError) {
+    pub fn transmission(&self, i: usize, state: &State, worn: &External) -> (f64, CyclicError) {
         let (motor_rad, motor_rad_s) = (state.motor_rad[i], state.motor_rad_s[i]);
         let error = self.drive.cyclic_error(i, motor_rad);
         let windup_rad = motor_rad - error.angle_rad - state.ring_rad[i];
+        let loose_rad = worn.loose_rad[i];
+        let taut_rad = windup_rad - windup_rad.clamp(-loose_rad, loose_rad);
         let transmitted_n_m = self.drive.transmitted_torque(
-            windup_rad - windup_rad.clamp(-loose_rad, loose_rad),
+            taut_rad * (1.0 - worn.lost_stiffness[i]),
             motor_rad_s - error.slope * motor_rad_s - state.ring_rad_s[i],
         );
         (transmitted_n_m, error)
@@ -219,7 +223,7 @@ impl Dynamics {
         rate: &mut State,
     ) {
         let (motor_rad, motor_rad_s) = (state.motor_rad[i], state.motor_rad_s[i]);
-        let (transmitted_n_m, error) = self.transmission(i, state, external.loose_rad[i]);
+        let (transmitted_n_m, error) = self.transmission(i, state, external);
         let friction =
             (self.ring_friction).evaluate(state.ring_rad_s[i], state.bristle_rad[i], step_s);
         let more_n_m = external.more_friction_n_m[i] * state.ring_rad_s[i]

@@ -264,10 +264,7 @@ impl Plant {
     /// Torques that the transmissions pass on to the rings, N m.
     #[must_use]
     pub fn transmitted_n_m(&self) -> [f64; AXES] {
-        [0, 1, 2].map(|i| {
-            let loose_rad = self.external.loose_rad[i];
-            self.dynamics.transmission(i, &self.state, loose_rad).0
-        })
+        [0, 1, 2].map(|i| (self.dynamics.transmission(i, &self.state, &self.external)).0)
     }
 
     /// Winding currents, A.
