@@ -127,6 +127,13 @@ fn a_machine_is_planned_measured_and_fitted() {
         text.contains("xyt, 200 poses, without those of lines 12\n"),
         "{text}"
     );
+    // An instrument that is better than said.
+    let mut fit = fit;
+    (fit[3], fit[5]) = ("100nm", "2urad");
+    let said = calibrate(&folder, &fit);
+    let text = String::from_utf8_lossy(&said.stdout);
+    let doubt = "under 1, so the noise is less than was said";
+    assert!(text.contains(doubt), "{text}");
 }
 
 #[test]

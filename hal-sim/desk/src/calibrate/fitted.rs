@@ -182,10 +182,14 @@ impl FitTold {
                 format!(", without those of lines {}", lines.join(", "))
             }
         };
-        let doubt = if self.chi2_is_doubtful {
-            ": not 1, so the noise is not what was said, or the machine is not of this model, and what is expected does not hold"
-        } else {
-            ""
+        let doubt = match (self.chi2_is_doubtful, self.chi2 < 1.0) {
+            (false, _) => "",
+            (true, true) => {
+                ": under 1, so the noise is less than was said, and what is expected is too much"
+            }
+            (true, false) => {
+                ": over 1, so the noise is more than was said, or the machine is not of this model, and what is expected does not hold"
+            }
         };
         let mut lines = vec![
             Line::new(

@@ -174,7 +174,7 @@ impl Told {
                 self.verdict
             ),
             "better than predicted" => {
-                "better than predicted: the noise is not what was said".to_owned()
+                "better than predicted: the noise is less than was said".to_owned()
             }
             verdict => verdict.to_owned(),
         };
