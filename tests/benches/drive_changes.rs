@@ -100,11 +100,12 @@ const CASES: [(&str, Option<Injection>, Option<usize>); 20] = [
     ),
 ];
 
-/// What came of it: the fault, or the seconds until the event and whether there were others.
+/// What came of it: the seconds until the event, or the fault that came before; other events of drives; what was found of the drives last.
 struct Outcome {
-    fault: Option<String>,
     told_s: Option<f64>,
+    fault: Option<String>,
     others: usize,
+    found: Vec<[f64; 3]>,
 }
 
 fn main() {
@@ -121,6 +122,21 @@ fn main() {
     for (outcomes, (name, ..)) in outcomes.chunks(machines as usize).zip(CASES) {
         println!("{}", row(name, outcomes));
     }
+    let sound: Vec<[f64; 3]> = (outcomes.iter().take(machines as usize))
+        .flat_map(|outcome| outcome.found.clone())
+        .collect();
+    let spread = |i: usize, digits: usize| {
+        let values = || sound.iter().map(|found| found[i]);
+        let least = values().fold(f64::INFINITY, f64::min);
+        let most = values().fold(f64::NEG_INFINITY, f64::max);
+        format!("{least:.digits$} to {most:.digits$}")
+    };
+    println!(
+        "where nothing changes: motor constants {} of their parameters, current sensors {} A off, friction {} N m over its parameters",
+        spread(0, 3),
+        spread(1, 2),
+        spread(2, 2)
+    );
 }
 
 fn row(name: &str, outcomes: &[Outcome]) -> String {
@@ -153,7 +169,7 @@ fn row(name: &str, outcomes: &[Outcome]) -> String {
 }
 
 fn run(case: usize, number: u64) -> Outcome {
-    let (_, change, word) = CASES[case];
+    let (_, change, _) = CASES[case];
     let known = machine(number, number);
     let parameters = told(&known);
     let mut bench = Bench::told(&on_another_day(&known, number), &parameters);
@@ -174,13 +190,14 @@ fn run(case: usize, number: u64) -> Outcome {
         // A look twice a second is near enough.
         let is_over = bench.fault().is_some();
         if is_over || tick.is_multiple_of(TICKS_PER_S / 2) {
-            let told_s = told_s(&mut bench, word, age.unwrap_or(0));
-            if told_s.is_some() || is_over {
-                return outcome(bench, word, told_s);
+            let told = events_of_drives(&mut bench);
+            assert!(age.is_some() || told.is_empty(), "{number}: {told:?}");
+            if is_over || told.iter().any(|event| is_of(case, event)) {
+                return outcome(&mut bench, case, age);
             }
         }
     }
-    outcome(bench, word, None)
+    outcome(&mut bench, case, None)
 }
 
 fn random_move(random: &mut Random) -> String {
@@ -197,25 +214,40 @@ fn random_move(random: &mut Random) -> String {
     )
 }
 
-/// Seconds from the change to its event, if that is there; `age` ticks after the change.
-fn told_s(bench: &mut Bench, word: Option<usize>, age: u64) -> Option<f64> {
-    let word = WORDS[word?];
-    let pivot = format!("pivot {}", PIVOT + 1);
+fn events_of_drives(bench: &mut Bench) -> Vec<String> {
     let events = bench.say("EVT?\n");
-    let mut lines = events.lines();
-    let is_told = lines.any(|line| line.contains(word) && line.contains(&pivot));
-    is_told.then_some(age as f64 / TICKS_PER_S as f64)
+    let is_of_drive = |line: &&str| WORDS.iter().any(|word| line.contains(word));
+    (events.lines().filter(is_of_drive))
+        .map(str::to_owned)
+        .collect()
 }
 
-fn outcome(mut bench: Bench, word: Option<usize>, told_s: Option<f64>) -> Outcome {
-    let events = bench.say("EVT?\n");
-    let of_others = |line: &&str| {
-        let mut words = WORDS.iter().enumerate();
-        words.any(|(i, known)| Some(i) != word && line.contains(known))
+/// Whether an event is that of the change: all three motors are where the supply's sensor is off.
+fn is_of(case: usize, event: &str) -> bool {
+    let (_, change, word) = CASES[case];
+    let is_of_all = matches!(change, Some(Injection::SupplyBias(_)));
+    word.is_some_and(|word| event.contains(WORDS[word]))
+        && (is_of_all || event.contains(&format!("pivot {}", PIVOT + 1)))
+}
+
+/// `age`: ticks from the change to its event, or to a fault.
+fn outcome(bench: &mut Bench, case: usize, age: Option<u64>) -> Outcome {
+    let events = events_of_drives(bench);
+    let (of_it, others): (Vec<_>, Vec<_>) = events.iter().partition(|event| is_of(case, event));
+    let told_s = age.filter(|_| !of_it.is_empty());
+    let told_s = told_s.map(|age| age as f64 / TICKS_PER_S as f64);
+    let lines = bench.say("LST?\n");
+    let numbers = |line: &str| {
+        let (_, numbers) = line.split_once('=').expect("a name");
+        let mut numbers = numbers.split_whitespace().map(|number| number.parse());
+        [(); 3].map(|()| numbers.next().expect("three").expect("a number"))
     };
     Outcome {
-        fault: bench.fault_kind().map(|kind| format!("{kind:?}")),
         told_s,
-        others: events.lines().filter(of_others).count(),
+        fault: (bench.fault_kind().filter(|_| told_s.is_none())).map(|kind| format!("{kind:?}")),
+        others: others.len(),
+        found: (lines.lines().filter(|line| line.starts_with("DRIVE")))
+            .map(numbers)
+            .collect(),
     }
 }

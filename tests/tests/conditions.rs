@@ -140,6 +140,33 @@ fn more_friction_is_told() {
     assert_eq!(bench.fault(), None);
 }
 
+/// A motor that does not drive tells nothing: what was learnt in slow motion, and a hand that turns the platform with the servo off.
+#[test]
+fn nothing_is_said_of_a_stage_that_is_turned_by_hand() {
+    let mut bench = known();
+    more_current(&mut bench, 0.2);
+    bench.say("JOG W 17\n");
+    bench.run(20_000);
+    bench.say("HLT\n");
+    bench.settle();
+    assert_eq!(bench.error_after("SVO X 0"), "0");
+    for turn in 0..12 {
+        let way = if turn % 2 == 0 { 1.0 } else { -1.0 };
+        for push in [4.0, 0.2, -4.0] {
+            with_external(&mut bench, |external| {
+                external.ring_torque_n_m = [way * push; 3];
+            });
+            bench.run(if push == 0.2 { 8_000 } else { 1_500 });
+        }
+        with_external(&mut bench, |_| ());
+        bench.run(10_000);
+    }
+    let turned = bench.rig.front.stage.plant.pivot_rates_rad_s();
+    println!("{turned:?} rad/s at last");
+    assert_eq!(drive(&mut bench, PIVOT), None);
+    assert_eq!(told(&mut bench), [""; 0]);
+}
+
 /// What was seen is not held against other parameters.
 #[test]
 fn other_parameters_begin_anew() {
@@ -147,6 +174,11 @@ fn other_parameters_begin_anew() {
     go_round(&mut bench, FOR_ONE);
     assert!(drive(&mut bench, PIVOT).is_some());
     assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");
-    assert_eq!(bench.error_after("SPA 1 0x54500802 2.2"), "0");
-    assert_eq!(drive(&mut bench, PIVOT), None);
+    // Its resistance; the guides' friction.
+    for line in ["SPA 1 0x54500802 2.2", "SPA 1 0x54500706 1"] {
+        assert_eq!(bench.error_after(line), "0");
+        assert_eq!(drive(&mut bench, PIVOT), None, "{line}");
+        go_round(&mut bench, FOR_ONE);
+        assert!(drive(&mut bench, PIVOT).is_some(), "{line}");
+    }
 }

@@ -6,6 +6,7 @@
 //! to that. Stop: the path at the speed that it had, slower and slower over the stop's time, in which a lost pivot drifts by what its
 //! motor does with torques and volts that nobody told the controller of.
 
+use firmware::control::units::SUPPLY_V_PER_COUNT;
 use firmware::fault::{Fault, Reaction};
 use firmware::parameters::Parameters;
 
@@ -14,13 +15,15 @@ use super::rest::{Rests, ToRest};
 use super::scenario::Scenario;
 use super::truth::Path;
 use crate::front::Wiring;
-use crate::machine::devices::{BridgeState, Bus, Stage};
+use crate::machine::devices::{BridgeState, Stage};
 use crate::machine::plant::{AXES, Plant};
 
 /// A run may be worse than its bound by this, for what the bound leaves out.
 pub const MARGIN: f64 = 1.2;
 /// Most ticks that a stage is watched after a fault, until it rests.
 pub(super) const AFTERMATH: u64 = 20_000;
+/// Supply that bridges bear, V.
+const BORNE_V: f64 = 60.0;
 /// Break-away over Coulomb friction, of every friction of the machine.
 const BREAK_AWAY: f64 = 1.2;
 
@@ -70,8 +73,24 @@ impl Moment {
         bound
     }
 
-    /// The same machine with windings shorted, or open, from here on; what is broken stays broken.
-    fn let_run(mut self, scenario: &Scenario, awake: bool, asked: &Path) -> ToRest {
+    /// The same machine with windings shorted, or open, from here on; what is broken stays broken. Bridges that have tripped brake by their diodes, onto
+    /// a bus that the resistor holds down, and no more where that stays a little under what switches the resistor: how hard such a ring hits an end hangs
+    /// on a tenth of a volt. The harder blow of two counts, one of which has a bus that the resistor only keeps from what bridges bear.
+    fn let_run(self, scenario: &Scenario, awake: bool, asked: &Path) -> ToRest {
+        let copy = Self {
+            stage: self.stage.clone(),
+            ..self
+        };
+        let mut to_rest = self.let_run_on(scenario, awake, asked, 0.0);
+        if to_rest.blow_j > 0.0 {
+            let higher = copy.let_run_on(scenario, awake, asked, BORNE_V - RESISTOR_ON_V);
+            to_rest.blow_j = to_rest.blow_j.max(higher.blow_j);
+        }
+        to_rest
+    }
+
+    /// The same; the resistor is switched at so many V more.
+    fn let_run_on(mut self, scenario: &Scenario, awake: bool, asked: &Path, more_v: f64) -> ToRest {
         let told = BridgeState {
             awake,
             ..BridgeState::RESET
@@ -90,8 +109,9 @@ impl Moment {
             if rests.to_rest().rests && tick > self.tick + 20 {
                 break;
             }
-            // Bridges that have tripped brake by their diodes, onto a bus that the resistor holds down: no further than the controller has it.
-            let volts = self.stage.bus().map_or(0.0, Bus::volts);
+            // As the controller sees the bus.
+            let (_, supply_counts) = self.stage.analog();
+            let volts = f64::from(supply_counts) * SUPPLY_V_PER_COUNT - more_v;
             is_on = volts > if is_on { RESISTOR_OFF_V } else { RESISTOR_ON_V };
             self.stage.set_brake_resistor(is_on);
             self.stage.advance_period(pins);

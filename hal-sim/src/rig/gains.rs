@@ -141,18 +141,30 @@ pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Pa
         * SAFETY
         * (lag_s(reference) / lag_s(plant)).min(1.0)
         * (guides_hz / GUIDES_HZ).sqrt().min(1.0);
-    for filters in &mut told.servo.filters {
-        filters.notches = notches(parameters, plant);
-    }
     for gains in &mut told.servo.gains {
         gains.velocity_v_s_rad *= share;
         gains.position_1_s *= share;
         gains.integral_v_rad *= share * share;
     }
     let plants = plants(&loop_model(stage), &PLACES);
-    // As they are where no slower ones do.
-    let sound = Gains::of(&told).slowed_until_sound(&plants, MOST_FITTED_MS);
-    sound.map_or(told.clone(), |(gains, _)| gains.applied_to(&told))
+    // A notch takes phase too: whichever bears more, with or without. As they are where no slower ones do.
+    let filtered = |notches: [Notch; 2]| {
+        let mut told = told.clone();
+        for filters in &mut told.servo.filters {
+            filters.notches = notches;
+        }
+        told
+    };
+    let with_notches = filtered(notches(parameters, plant));
+    let without = filtered(parameters.servo.filters[0].notches);
+    let sound = |told: &Parameters| {
+        let (gains, _) = Gains::of(told).slowed_until_sound(&plants, MOST_FITTED_MS)?;
+        Some((gains.least_velocity_v_s_rad(), gains.applied_to(told)))
+    };
+    ([&with_notches, &without].into_iter())
+        .filter_map(sound)
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map_or_else(|| with_notches.clone(), |(_, told)| told)
 }
 
 /// The same with a motion that its motors bear.

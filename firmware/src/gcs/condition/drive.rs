@@ -4,12 +4,13 @@
 //! a motor constant that is off by dK, a current sensor by b and a winding of resistance R it comes to `x = dK - R b / rate`: dK is
 //! the same both ways of turning, b is not.
 //!
-//! The current of the servo's model is as large as the measured one where it goes with the rate. What accelerates a pivot brakes it too: over
-//! a way that ends as fast as it began nothing of that is left in its mean, and the torque that is left is friction's.
+//! With x learnt, the model's current is the measured one in the mean of a way, the sensor's offset with it, which two ways of turning take out. What
+//! accelerates a pivot brakes it too: over a way that ends as fast as it began nothing of that is left in the mean, and the torque that is left is
+//! friction's.
 
 use crate::control::ServoReport;
 use crate::control::units::UNITS_PER_RAD;
-use crate::parameters::Drive;
+use crate::parameters::Parameters;
 use kinematics::Angle;
 
 /// Rate from which on a current tells of the motor constant, rad/s: below, friction and resistance decide what flows.
@@ -18,17 +19,19 @@ const LEAST_RATE_RAD_S: f32 = 1.0;
 const LEARNT_AFTER_S: f32 = 0.06;
 /// Time each way that a finding is made of, s.
 const FOUND_AFTER_S: f32 = 0.5;
+/// What has been seen one way for longer than this, s, is forgotten by halves.
+const LONGEST_S: f32 = 10.0;
 /// Longest time from one look to the next, s: in a longer one it may have turned back and again.
-const LONGEST_LOOK_S: f32 = 0.02;
+const LONGEST_LOOK_S: f32 = 0.05;
 
-/// What a drive is found to be, in the order of [`DriveQuantity`](super::watch::DriveQuantity).
+/// What a drive is found to be, as `LST?` tells it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DriveCondition {
     /// Motor constant over the parameter's.
     pub motor_constant_ratio: f32,
     /// What the current sensor reads more than flows, A.
     pub current_offset_a: f32,
-    /// Friction besides the parameters', at the ring, N m: the guides' is among it.
+    /// Friction besides that of the parameters, at the ring, N m.
     pub more_friction_n_m: f32,
 }
 
@@ -44,7 +47,7 @@ pub(super) struct DriveWatch {
 
 /// Sums over the time in which it turns one way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct OneWay {
+pub(super) struct OneWay {
     all: Sums,
     /// Where the servo has learnt.
     learnt: Sums,
@@ -59,19 +62,26 @@ struct Sums {
 }
 
 impl DriveWatch {
-    /// Looks at its pivot once more; whether enough has been seen for a finding.
-    pub fn look(&mut self, tick: u64, angle: Angle, servo: &ServoReport, period_s: f32) -> bool {
-        let Some((last_tick, last_angle)) = self.last.replace((tick, angle)) else {
-            return false;
-        };
+    /// Looks at its pivot once more, while the servo drives it; what has been seen forward and backward, once that is enough.
+    pub fn look(
+        &mut self,
+        tick: u64,
+        angle: Angle,
+        servo: &ServoReport,
+        period_s: f32,
+    ) -> Option<[OneWay; 2]> {
+        let (last_tick, last_angle) = self.last.replace((tick, angle))?;
         let seconds = tick.wrapping_sub(last_tick) as f32 * period_s;
+        if seconds > LONGEST_LOOK_S {
+            *self = Self::default();
+            return None;
+        }
         let way_rad = ((angle - last_angle).units() as f64 / UNITS_PER_RAD) as f32;
         let turns = way_rad.abs() > LEAST_RATE_RAD_S * seconds;
-        if !turns || seconds > LONGEST_LOOK_S || self.turned_s * way_rad < 0.0 {
-            // Nothing is found in the middle of a way: what has accelerated it would be taken for friction.
+        if !turns || self.turned_s * way_rad < 0.0 {
+            // Only at the end of a way: in its middle, what has accelerated it would be taken for friction.
             self.turned_s = 0.0;
-            let ways = [&self.forward, &self.backward];
-            return ways.iter().all(|way| way.learnt.seconds > FOUND_AFTER_S);
+            return self.seen();
         }
         self.turned_s += seconds.copysign(way_rad);
         let way = if way_rad > 0.0 {
@@ -84,34 +94,55 @@ impl DriveWatch {
             let excess = servo.learnt.motor_constant_excess;
             way.learnt.add(seconds, way_rad, excess * way_rad);
         }
-        false
+        None
     }
 
-    /// What it is found to be; begins anew.
-    pub fn find(&mut self, drive: &Drive) -> DriveCondition {
-        let forward = core::mem::take(&mut self.forward);
-        let backward = core::mem::take(&mut self.backward);
-        let [rate, volts] = forward.learnt.means();
-        let [back_rate, back_volts] = backward.learnt.means();
-        let excess = (volts - back_volts) / (rate - back_rate);
-        let modelled = (drive.torque_constant_n_m_a * drive.gear_ratio) as f32;
-        // Half of what the ways are apart.
-        let [mean_rate, mean_knees] = {
-            let (forward, backward) = (forward.all.means(), backward.all.means());
-            [0, 1].map(|i| 0.5 * (forward[i] - backward[i]))
-        };
-        let torque_n_m = (modelled + excess) * mean_knees * drive.dead_time_knee_a as f32;
-        let known_n_m = drive.coulomb_n_m as f32 + drive.viscous_n_m_s as f32 * mean_rate;
-        DriveCondition {
-            motor_constant_ratio: 1.0 + excess / modelled,
-            current_offset_a: (excess * rate - volts) / drive.resistance_ohm as f32,
-            more_friction_n_m: torque_n_m - known_n_m,
-        }
+    /// What has been seen, if it is enough; begins anew.
+    fn seen(&mut self) -> Option<[OneWay; 2]> {
+        let ways = [self.forward, self.backward];
+        let is_enough = ways.iter().all(|way| way.learnt.seconds > FOUND_AFTER_S);
+        is_enough.then(|| {
+            (self.forward, self.backward) = Default::default();
+            ways
+        })
+    }
+}
+
+/// What the drive of a pivot is found to be, from what was seen of it.
+pub(super) fn find(
+    [forward, backward]: [OneWay; 2],
+    parameters: &Parameters,
+    pivot: usize,
+) -> DriveCondition {
+    let drive = &parameters.drives[pivot];
+    let [rate, volts] = forward.learnt.means();
+    let [back_rate, back_volts] = backward.learnt.means();
+    let excess = (volts - back_volts) / (rate - back_rate);
+    let modelled = (drive.torque_constant_n_m_a * drive.gear_ratio) as f32;
+    // Half of what the ways are apart.
+    let (forward, backward) = (forward.all.means(), backward.all.means());
+    let [mean_rate, mean_knees] = [0, 1].map(|i| 0.5 * (forward[i] - backward[i]));
+    let torque_n_m = (modelled + excess) * mean_knees * drive.dead_time_knee_a as f32;
+    // Carriages are about as fast on their guides as pivots on the track, one with another.
+    let guides_n_m = parameters.guides.coulomb_n * parameters.geometry.radius_mm * 1e-3;
+    let known_n_m =
+        (drive.coulomb_n_m + guides_n_m) as f32 + drive.viscous_n_m_s as f32 * mean_rate;
+    DriveCondition {
+        motor_constant_ratio: 1.0 + excess / modelled,
+        current_offset_a: (excess * rate - volts) / drive.resistance_ohm as f32,
+        more_friction_n_m: torque_n_m - known_n_m,
     }
 }
 
 impl Sums {
     fn add(&mut self, seconds: f32, way_rad: f32, value: f32) {
+        if self.seconds > LONGEST_S {
+            *self = Self {
+                seconds: 0.5 * self.seconds,
+                way_rad: 0.5 * self.way_rad,
+                value: 0.5 * self.value,
+            };
+        }
         self.seconds += seconds;
         self.way_rad += way_rad;
         self.value += value;
@@ -127,7 +158,6 @@ impl Sums {
 mod tests {
     use super::*;
     use crate::control::servo::Learnt;
-    use crate::parameters::Parameters;
 
     const PERIOD_S: f32 = 50e-6;
     /// Ticks from one look to the next.
@@ -142,7 +172,9 @@ mod tests {
 
     impl Machine {
         /// Turns to and fro between these rates, as fast at first as at last, until something is found.
-        fn found(&self, rates_rad_s: [f32; 2], drive: &Drive) -> Option<DriveCondition> {
+        fn found(&self, rates_rad_s: [f32; 2]) -> Option<DriveCondition> {
+            let parameters = &Parameters::REFERENCE;
+            let drive = &parameters.drives[0];
             let modelled = (drive.torque_constant_n_m_a * drive.gear_ratio) as f32;
             let motor_constant = modelled * self.motor_constant_ratio;
             let mut watch = DriveWatch::default();
@@ -170,8 +202,8 @@ mod tests {
                     current_knees: current_a / drive.dead_time_knee_a as f32,
                     ..ServoReport::default()
                 };
-                if watch.look(look * LOOK, angle, &servo, PERIOD_S) {
-                    return Some(watch.find(drive));
+                if let Some(ways) = watch.look(look * LOOK, angle, &servo, PERIOD_S) {
+                    return Some(find(ways, parameters, 0));
                 }
             }
             None
@@ -180,7 +212,6 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_found_and_nothing_else() {
-        let drive = &Parameters::REFERENCE.drives[0];
         for (motor_constant_ratio, current_offset_a, more_friction_n_m) in [
             (1.0, 0.0, 0.0),
             (0.8, 0.0, 0.0),
@@ -193,7 +224,7 @@ mod tests {
                 current_offset_a,
                 more_friction_n_m,
             };
-            let found = machine.found([5.0, -3.0], drive).expect("it turns enough");
+            let found = machine.found([5.0, -3.0]).expect("it turns enough");
             let off = [
                 found.motor_constant_ratio - motor_constant_ratio,
                 found.current_offset_a - current_offset_a,
@@ -208,14 +239,13 @@ mod tests {
 
     #[test]
     fn nothing_is_said_of_a_pivot_that_turns_slowly_or_one_way() {
-        let drive = &Parameters::REFERENCE.drives[0];
         let machine = Machine {
             motor_constant_ratio: 0.5,
             current_offset_a: 1.0,
             more_friction_n_m: 5.0,
         };
-        assert_eq!(machine.found([0.99, -0.99], drive), None);
-        assert_eq!(machine.found([5.0, 5.0], drive), None);
-        assert_eq!(machine.found([5.0, -0.99], drive), None);
+        assert_eq!(machine.found([0.99, -0.99]), None);
+        assert_eq!(machine.found([5.0, 5.0]), None);
+        assert_eq!(machine.found([5.0, -0.99]), None);
     }
 }

@@ -1,10 +1,11 @@
 //! Thresholds, events, lines of `LST?`.
 
-use super::drive::{DriveCondition, DriveWatch};
+use super::drive::{DriveCondition, DriveWatch, find};
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::WriteFailed;
 use crate::gcs::reply_writer::ReplyWriter;
+use crate::mode::Mode;
 use crate::queues::Snapshot;
 
 /// What of a drive may be no more what its parameters say.
@@ -59,7 +60,7 @@ pub(in crate::gcs) struct DriveWatches {
 struct Told {
     is_off: bool,
     /// The last finding was otherwise.
-    is_doubted: bool,
+    was_otherwise: bool,
 }
 
 impl Told {
@@ -68,31 +69,34 @@ impl Told {
     fn take(&mut self, off: f32, within: f32) -> bool {
         let is_off = off > if self.is_off { 0.5 * within } else { within };
         let is_otherwise = is_off != self.is_off;
-        let changes = is_otherwise && self.is_doubted;
-        self.is_doubted = is_otherwise && !changes;
+        let changes = is_otherwise && self.was_otherwise;
+        self.was_otherwise = is_otherwise && !changes;
         self.is_off ^= changes;
         changes
     }
 }
 
-impl DriveWatches {
-    /// The parameters say something else from now on, which what was seen is not held against.
-    pub fn restart(&mut self) {
-        (self.drives, self.found) = Default::default();
-    }
-}
-
 impl Interpreter {
+    /// Other parameters from now on: what was seen, and told, is not held against them.
+    pub(in crate::gcs) fn restart_drive_watches(&mut self) {
+        self.drive_watches = DriveWatches::default();
+    }
+
     /// Looks at the drive that a snapshot tells of.
     pub(in crate::gcs) fn watch_drive(&mut self, snapshot: &Snapshot) {
         let (servo, watches) = (&snapshot.servo, &mut self.drive_watches);
         let pivot = servo.pivot.min(2);
-        let period_s = (1.0 / self.parameters.limits.rate_hz) as f32;
         let watch = &mut watches.drives[pivot];
-        if !watch.look(snapshot.tick, snapshot.pivots[pivot], servo, period_s) {
+        if !matches!(snapshot.mode, Mode::Holding | Mode::Moving) {
+            // What turns a pivot then is not its motor, or it has not ended its way.
+            *watch = DriveWatch::default();
             return;
         }
-        let found = watch.find(&self.parameters.drives[pivot]);
+        let period_s = (1.0 / self.parameters.limits.rate_hz) as f32;
+        let Some(ways) = watch.look(snapshot.tick, snapshot.pivots[pivot], servo, period_s) else {
+            return;
+        };
+        let found = find(ways, &self.parameters, pivot);
         watches.found[pivot] = Some(found);
         for quantity in DriveQuantity::ALL {
             let told = &mut watches.told[pivot][quantity as usize];

@@ -142,11 +142,11 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         22 => Event::RecoveryGivenUp,
         28 => Event::FramesBridged(first, a as u16),
         31 => Event::EncoderStepped(first, f32::from_bits(a)),
+        29 => Event::CalibratedTemperature(first != 0, f32::from_bits(a)),
         32 => {
             let quantity = *DriveQuantity::ALL.get(usize::from(second))?;
             Event::Drive(first, quantity, b != 0, f32::from_bits(a))
         }
-        29 => Event::CalibratedTemperature(first != 0, f32::from_bits(a)),
         _ => return None,
     };
     Some((tick, event))

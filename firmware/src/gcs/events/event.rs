@@ -113,10 +113,17 @@ impl fmt::Display for Event {
             }
             Self::Drive(pivot, quantity, is_off, value) => {
                 match (quantity, is_off) {
-                    (DriveQuantity::MotorConstant, true) => write!(
-                        f,
-                        "motor constant {value:.2} of its parameter: a weak motor, or the supply's sensor"
-                    ),
+                    (DriveQuantity::MotorConstant, true) => {
+                        let or = if *value < 1.0 {
+                            "a weak motor"
+                        } else {
+                            "a parameter that is wrong"
+                        };
+                        write!(
+                            f,
+                            "motor constant {value:.2} of its parameter: {or}, or the supply's sensor"
+                        )
+                    }
                     (DriveQuantity::MotorConstant, false) => {
                         f.write_str("motor constant as its parameter says again")
                     }

@@ -85,8 +85,18 @@ impl Interpreter {
         if wanted.learnt != self.parameters.learnt {
             self.servo_reports.outdate();
         }
-        if wanted.drives != self.parameters.drives {
-            self.drive_watches.restart();
+        let of_drives = |parameters: &Parameters| {
+            let Parameters {
+                drives,
+                guides,
+                encoders,
+                wiring,
+                ..
+            } = parameters;
+            (*drives, *guides, *encoders, *wiring)
+        };
+        if of_drives(&wanted) != of_drives(&self.parameters) {
+            self.restart_drive_watches();
         }
         self.rated_limits = highest(&self.rated_limits, &wanted.limits);
         self.previous_parameters = core::mem::replace(&mut self.parameters, wanted);
