@@ -64,7 +64,7 @@ const TAIL: &str = "
 | what | what happens |
 |---|---|
 | an encoder's warning bit, in two good frames in a row | an event (`EVT?`) when it begins and when it ends; the position is good |
-| a motor constant more than 10 % off its parameter, a current sensor that reads more than 0.3 A besides what flows, friction of more than 1.5 N m over its parameters, in two findings in a row while the pivot turns faster than 1 rad/s | an event (`EVT?`) when it begins and when it is half of the way back; `LST?` tells what was found last (`DRIVE1=`) |
+| a motor constant more than 10 % off its parameter, a current sensor that reads more than 0.3 A besides what flows, friction of more than 1.5 N m over what the parameters of drive and guides say, in two findings in a row while the servo turns the pivot faster than 1 rad/s | an event (`EVT?`) when it begins and when it is half of the way back; a start begins anew. `LST?` tells what was found last (`DRIVE1=`) |
 | no host heard for longer than `HBT` or parameter 0x54500510 allow: one of the connections that have sent `HBT`, or, for the parameter, none at all | the stop of `STP`, error 10, an event: a stage that stands under its servo is safer than one whose motors are off |
 | the command queue is full | the command is refused whole with error 1005, nothing moves; the loop never waits |
 | a restart by a watchdog, a panic, a processor fault, a dip of the supply or a crystal that stops | the outputs are cut first, whatever hangs: the tick feeds a window watchdog that cuts them half a millisecond after the last one. Found at the next start: `FLT?` tells it, and `EVT?` the place in the program with it; the motors are off and the reference is gone |

@@ -147,7 +147,7 @@ fn nothing_is_said_of_a_stage_that_is_turned_by_hand() {
     more_current(&mut bench, 0.2);
     bench.say("JOG W 17\n");
     bench.run(20_000);
-    bench.say("HLT\n");
+    bench.say("HLT\nERR?\n");
     bench.settle();
     assert_eq!(bench.error_after("SVO X 0"), "0");
     for turn in 0..12 {

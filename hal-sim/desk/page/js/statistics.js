@@ -27,9 +27,9 @@ const PIVOT_NAMES = {
     value.split(" ").map((part, i) => `${part} ${LEARNT_UNITS[i]}`).join(", ")],
   INTEGRAL: ["integral", (value) => `${value} V`],
   CURRENT: ["motor current by the model", (value) => `${value} A`],
-  DRIVE: ["motor constant over its parameter; current sensor, friction besides what they should", (value) => {
+  DRIVE: ["motor constant over its parameter; offset of the current sensor; friction over its parameters", (value) => {
     const [ratio, offset, friction] = value.split(" ");
-    return `${ratio}; ${offset} A, ${friction} N m`;
+    return `${ratio}; ${offset} A; ${friction} N m`;
   }],
 };
 
