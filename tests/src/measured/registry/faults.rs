@@ -77,7 +77,7 @@ pub(super) const SECTIONS: &[Section] = &[
                 or less, magnets 3 % and supply 2 % off): random moves all over the disk at 50 to 200 mm/s; after 6 s something changes, at \
                 pivot 2, in a tenth of a second, and is waited for for 30 s. Faults are those that came before anything was told; \
                 what else was told of a drive is counted. Of the supply's sensor any motor tells.",
-        command: "MACHINES=32 cargo bench -p tests --bench drive_changes",
+        command: "MACHINES=24 cargo bench -p tests --bench drive_changes",
         short: Some("MACHINES=2 cargo bench -p tests --bench drive_changes"),
         kind: Kind::Deterministic,
         seconds: 1_000,
