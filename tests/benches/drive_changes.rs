@@ -236,18 +236,12 @@ fn outcome(bench: &mut Bench, case: usize, age: Option<u64>) -> Outcome {
     let (of_it, others): (Vec<_>, Vec<_>) = events.iter().partition(|event| is_of(case, event));
     let told_s = age.filter(|_| !of_it.is_empty());
     let told_s = told_s.map(|age| age as f64 / TICKS_PER_S as f64);
-    let lines = bench.say("LST?\n");
-    let numbers = |line: &str| {
-        let (_, numbers) = line.split_once('=').expect("a name");
-        let mut numbers = numbers.split_whitespace().map(|number| number.parse());
-        [(); 3].map(|()| numbers.next().expect("three").expect("a number"))
-    };
     Outcome {
         told_s,
         fault: (bench.fault_kind().filter(|_| told_s.is_none())).map(|kind| format!("{kind:?}")),
         others: others.len(),
-        found: (lines.lines().filter(|line| line.starts_with("DRIVE")))
-            .map(numbers)
+        found: (0..3)
+            .filter_map(|pivot| bench.drive_condition(pivot))
             .collect(),
     }
 }

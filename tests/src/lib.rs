@@ -177,6 +177,18 @@ impl Bench {
             .unwrap_or_else(|| panic!("{query} answers {answer:?}"))
     }
 
+    /// What condition monitoring has found of a drive last, by `LST?`: motor constant over its parameter, A of the current sensor, N m of friction.
+    ///
+    /// # Panics
+    /// When its line is no three numbers.
+    pub fn drive_condition(&mut self, pivot: usize) -> Option<[f64; 3]> {
+        let lines = self.say("LST?\n");
+        let name = format!("DRIVE{}=", pivot + 1);
+        let line = lines.lines().find_map(|line| line.strip_prefix(&name))?;
+        let mut numbers = line.split_whitespace().map(str::parse);
+        Some([(); 3].map(|()| numbers.next().expect("three").expect("a number")))
+    }
+
     /// Runs until the stage has settled.
     pub fn settle(&mut self) {
         self.say("WAC ONT? W = 1\n");

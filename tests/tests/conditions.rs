@@ -44,15 +44,6 @@ fn told(bench: &mut Bench) -> Vec<String> {
         .collect()
 }
 
-/// What `LST?` has of a drive.
-fn drive(bench: &mut Bench, pivot: usize) -> Option<[f64; 3]> {
-    let lines = bench.say("LST?\n");
-    let name = format!("DRIVE{}=", pivot + 1);
-    let line = lines.lines().find_map(|line| line.strip_prefix(&name))?;
-    let mut numbers = line.split_whitespace().map(|number| number.parse());
-    Some([(); 3].map(|()| numbers.next().expect("three").expect("a number")))
-}
-
 fn with_external(bench: &mut Bench, change: impl FnOnce(&mut External)) {
     let mut external = External::default();
     change(&mut external);
@@ -67,9 +58,9 @@ fn more_current(bench: &mut Bench, amperes: f64) {
 #[test]
 fn a_weaker_motor_is_told_and_told_again_when_it_is_as_it_was() {
     let mut bench = known();
-    assert_eq!(drive(&mut bench, PIVOT), None);
+    assert_eq!(bench.drive_condition(PIVOT), None);
     go_round(&mut bench, FOR_ONE);
-    let [ratio, offset_a, friction_n_m] = drive(&mut bench, PIVOT).expect("it has turned");
+    let [ratio, offset_a, friction_n_m] = bench.drive_condition(PIVOT).expect("it has turned");
     println!("sound: {ratio}, {offset_a} A, {friction_n_m} N m");
     assert!((ratio - 1.0).abs() < 0.02 && offset_a.abs() < 0.1 && friction_n_m.abs() < 0.5);
     with_external(&mut bench, |external| external.lost_torque[PIVOT] = 0.07);
@@ -103,7 +94,7 @@ fn a_current_sensor_that_is_off_is_told() {
     assert_eq!(told(&mut bench), [""; 0]);
     more_current(&mut bench, -0.75);
     go_round(&mut bench, FOR_ALL);
-    let [ratio, offset_a, _] = drive(&mut bench, PIVOT).expect("it has turned");
+    let [ratio, offset_a, _] = bench.drive_condition(PIVOT).expect("it has turned");
     println!("0.6 A less: {ratio}, {offset_a} A");
     let told = told(&mut bench);
     assert_eq!(told.len(), 1, "{told:?}");
@@ -163,7 +154,7 @@ fn nothing_is_said_of_a_stage_that_is_turned_by_hand() {
     }
     let turned = bench.rig.front.stage.plant.pivot_rates_rad_s();
     println!("{turned:?} rad/s at last");
-    assert_eq!(drive(&mut bench, PIVOT), None);
+    assert_eq!(bench.drive_condition(PIVOT), None);
     assert_eq!(told(&mut bench), [""; 0]);
 }
 
@@ -172,13 +163,13 @@ fn nothing_is_said_of_a_stage_that_is_turned_by_hand() {
 fn other_parameters_begin_anew() {
     let mut bench = known();
     go_round(&mut bench, FOR_ONE);
-    assert!(drive(&mut bench, PIVOT).is_some());
+    assert!(bench.drive_condition(PIVOT).is_some());
     assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");
     // Its resistance; the guides' friction.
     for line in ["SPA 1 0x54500802 2.2", "SPA 1 0x54500706 1"] {
         assert_eq!(bench.error_after(line), "0");
-        assert_eq!(drive(&mut bench, PIVOT), None, "{line}");
+        assert_eq!(bench.drive_condition(PIVOT), None, "{line}");
         go_round(&mut bench, FOR_ONE);
-        assert!(drive(&mut bench, PIVOT).is_some(), "{line}");
+        assert!(bench.drive_condition(PIVOT).is_some(), "{line}");
     }
 }
