@@ -68,15 +68,17 @@ impl DriveWatch {
         tick: u64,
         angle: Angle,
         servo: &ServoReport,
-        period_s: f32,
+        rate_hz: f32,
     ) -> Option<[OneWay; 2]> {
         let (last_tick, last_angle) = self.last.replace((tick, angle))?;
-        let seconds = tick.wrapping_sub(last_tick) as f32 * period_s;
+        // No f64 and no division of 64 bits: snapshots come every fourth tick.
+        let seconds = tick.wrapping_sub(last_tick) as u32 as f32 / rate_hz;
         if seconds > LONGEST_LOOK_S {
             *self = Self::default();
             return None;
         }
-        let way_rad = ((angle - last_angle).units() as f64 / UNITS_PER_RAD) as f32;
+        // In so short a time it is less than half a turn.
+        let way_rad = (angle - last_angle).units() as i32 as f32 * (1.0 / UNITS_PER_RAD) as f32;
         let turns = way_rad.abs() > LEAST_RATE_RAD_S * seconds;
         if !turns || self.turned_s * way_rad < 0.0 {
             // Only at the end of a way: in its middle, what has accelerated it would be taken for friction.
@@ -202,7 +204,7 @@ mod tests {
                     current_knees: current_a / drive.dead_time_knee_a as f32,
                     ..ServoReport::default()
                 };
-                if let Some(ways) = watch.look(look * LOOK, angle, &servo, PERIOD_S) {
+                if let Some(ways) = watch.look(look * LOOK, angle, &servo, 1.0 / PERIOD_S) {
                     return Some(find(ways, parameters, 0));
                 }
             }

@@ -92,8 +92,8 @@ impl Interpreter {
             *watch = DriveWatch::default();
             return;
         }
-        let period_s = (1.0 / self.parameters.limits.rate_hz) as f32;
-        let Some(ways) = watch.look(snapshot.tick, snapshot.pivots[pivot], servo, period_s) else {
+        let rate_hz = self.parameters.limits.rate_hz as f32;
+        let Some(ways) = watch.look(snapshot.tick, snapshot.pivots[pivot], servo, rate_hz) else {
             return;
         };
         let found = find(ways, &self.parameters, pivot);
