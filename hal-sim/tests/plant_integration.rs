@@ -127,6 +127,21 @@ fn tilted_stage_exchanges_energy_with_gravity() {
     assert!(drift < 3.7e-12, "{drift:e}");
 }
 
+/// A current that dies through the diodes is gone when it has come to nothing, at rest and while the motor turns.
+#[test]
+fn open_switches_end_a_current() {
+    for step_s in [3e-6, 12.5e-6, 16e-6] {
+        for volts in [0.5, -3.0, 20.0] {
+            let mut plant = Plant::new(PlantParameters::REFERENCE);
+            let drives = [1.0, -0.7, 0.3].map(|part: f64| Drive::Voltage(part * volts));
+            run(&mut plant, 20e-3, step_s, &drives);
+            assert!(plant.currents_a().iter().all(|current_a| *current_a != 0.0));
+            run(&mut plant, 1e-3, step_s, &[Drive::Coast; AXES]);
+            assert_eq!(plant.currents_a(), [0.0; AXES], "{step_s} s, {volts} V");
+        }
+    }
+}
+
 #[test]
 fn an_end_stop_gives_back_what_it_takes() {
     let mut plant = Plant::new(conservative());

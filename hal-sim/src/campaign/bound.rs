@@ -22,8 +22,6 @@ use crate::machine::plant::{AXES, Plant};
 pub const MARGIN: f64 = 1.2;
 /// Most ticks that a stage is watched after a fault, until it rests.
 pub(super) const AFTERMATH: u64 = 20_000;
-/// Supply that bridges bear, V.
-const BORNE_V: f64 = 60.0;
 /// Break-away over Coulomb friction, of every friction of the machine.
 const BREAK_AWAY: f64 = 1.2;
 
@@ -73,24 +71,9 @@ impl Moment {
         bound
     }
 
-    /// The same machine with windings shorted, or open, from here on; what is broken stays broken. Bridges that have tripped brake by their diodes, onto
-    /// a bus that the resistor holds down, and no more where that stays a little under what switches the resistor: how hard such a ring hits an end hangs
-    /// on a tenth of a volt. The harder blow of two counts, one of which has a bus that the resistor only keeps from what bridges bear.
-    fn let_run(self, scenario: &Scenario, awake: bool, asked: &Path) -> ToRest {
-        let copy = Self {
-            stage: self.stage.clone(),
-            ..self
-        };
-        let mut to_rest = self.let_run_on(scenario, awake, asked, 0.0);
-        if to_rest.blow_j > 0.0 {
-            let higher = copy.let_run_on(scenario, awake, asked, BORNE_V - RESISTOR_ON_V);
-            to_rest.blow_j = to_rest.blow_j.max(higher.blow_j);
-        }
-        to_rest
-    }
-
-    /// The same; the resistor is switched at so many V more.
-    fn let_run_on(mut self, scenario: &Scenario, awake: bool, asked: &Path, more_v: f64) -> ToRest {
+    /// The same machine with windings shorted, or open, from here on; what is broken stays broken. Bridges that have tripped brake by their
+    /// diodes, onto a bus that the resistor holds down as the controller sees it.
+    fn let_run(mut self, scenario: &Scenario, awake: bool, asked: &Path) -> ToRest {
         let told = BridgeState {
             awake,
             ..BridgeState::RESET
@@ -99,22 +82,21 @@ impl Moment {
         let mut rests = Rests::default();
         let mut is_on = self.stage.brake_resistor_is_on();
         scenario.injection.let_go(&mut self.stage.plant);
-        for tick in self.tick..self.tick + AFTERMATH {
-            let plant = &mut self.stage.plant;
+        rests.look(self.tick, &self.stage.plant, asked);
+        for tick in self.tick + 1..self.tick + AFTERMATH {
             if !scenario.injection.lets_go() {
                 let age = tick.saturating_sub(scenario.at);
-                (scenario.injection).push(plant, scenario.axis, age);
+                (scenario.injection).push(&mut self.stage.plant, scenario.axis, age);
             }
+            let (_, supply_counts) = self.stage.analog();
+            let volts = f64::from(supply_counts) * SUPPLY_V_PER_COUNT;
+            is_on = volts > if is_on { RESISTOR_OFF_V } else { RESISTOR_ON_V };
+            self.stage.set_brake_resistor(is_on);
+            self.stage.advance_period(pins);
             rests.look(tick, &self.stage.plant, asked);
             if rests.to_rest().rests && tick > self.tick + 20 {
                 break;
             }
-            // As the controller sees the bus.
-            let (_, supply_counts) = self.stage.analog();
-            let volts = f64::from(supply_counts) * SUPPLY_V_PER_COUNT - more_v;
-            is_on = volts > if is_on { RESISTOR_OFF_V } else { RESISTOR_ON_V };
-            self.stage.set_brake_resistor(is_on);
-            self.stage.advance_period(pins);
         }
         rests.to_rest()
     }

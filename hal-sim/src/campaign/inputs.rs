@@ -80,7 +80,7 @@ impl Inputs {
 
     /// How much more it differs from the sound run's than that does from other sound runs: of the channel in which it is most.
     #[must_use]
-    pub fn differ(&self, sound: &Self, others: &[&Self], scenario: &Scenario) -> f64 {
+    pub fn differ(&self, sound: &Self, others: &[Self], scenario: &Scenario) -> f64 {
         let by_fault = self.apart(sound, scenario);
         let mut sound_ones = [1.0_f64; CHANNELS];
         for other in others {

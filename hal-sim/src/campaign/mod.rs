@@ -122,6 +122,9 @@ impl Campaign<'_> {
     }
 }
 
+/// Other days that the inputs of an undetected fault are held against, at most: until one differs from the sound run by more.
+const MOST_DAYS: u64 = 8;
+
 /// The run of a seed with its fault, and without, on one of these machines, or on one that is drawn.
 #[must_use]
 pub fn replay(seed: u64, machines: &[Commissioned]) -> [Outcome; 2] {
@@ -130,18 +133,28 @@ pub fn replay(seed: u64, machines: &[Commissioned]) -> [Outcome; 2] {
     if pair[0].detected().is_none() {
         let mut with_other_noise = pair[1].scenario.clone();
         with_other_noise.stage.seed = !with_other_noise.seed;
-        let mut then = with_other_noise.clone();
-        then.stage = on_another_day(&then.stage, seed);
-        let [noise, then] = [with_other_noise, then].map(|scenario| run(scenario, true).inputs);
+        let noise = run(with_other_noise.clone(), true).inputs;
         let [broken, sound] = &mut pair;
-        let than = |others: &[&Inputs]| {
+        let than = |others: &[Inputs]| {
             broken
                 .inputs
                 .differ(&sound.inputs, others, &broken.scenario)
         };
+        let mut others = vec![noise];
+        let than_noise = than(&others);
+        let mut than_another_day = than_noise;
+        for day in 0..MOST_DAYS {
+            if than_another_day < 1.0 {
+                break;
+            }
+            let mut then = with_other_noise.clone();
+            then.stage = on_another_day(&then.stage, seed ^ day << 48);
+            others.push(run(then, true).inputs);
+            than_another_day = than(&others);
+        }
         broken.differs = Some(Differs {
-            than_noise: than(&[&noise]),
-            than_another_day: than(&[&noise, &then]),
+            than_noise,
+            than_another_day,
         });
     }
     for outcome in &mut pair {

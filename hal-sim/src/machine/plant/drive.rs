@@ -121,24 +121,33 @@ impl DriveModel {
         }
     }
 
+    /// Voltage at the motor's terminals over a step that begins with this current and back-EMF, V; none while all switches are open and
+    /// nothing flows. It is the same over all of the step: a current that dies in the diodes does not reverse in it.
+    #[must_use]
+    pub fn terminal_v(&self, drive: Drive, current_a: f64, back_emf_v: f64) -> Option<f64> {
+        match drive {
+            Drive::Voltage(volts) => Some(volts.clamp(-self.supply_v, self.supply_v)),
+            Drive::Brake => Some(0.0),
+            Drive::Coast if current_a != 0.0 => Some(-self.supply_v.copysign(current_a)),
+            // The diodes conduct only what drives more than the supply, and against it.
+            Drive::Coast => {
+                (back_emf_v.abs() > self.supply_v).then(|| self.supply_v.copysign(back_emf_v))
+            }
+        }
+    }
+
     /// Time derivative of the current, A/s, with the back-EMF and the resistance that the winding has.
     #[must_use]
     pub fn current_rate(
         &self,
-        drive: Drive,
+        terminal_v: Option<f64>,
         current_a: f64,
         back_emf_v: f64,
         resistance_ohm: f64,
     ) -> f64 {
-        let terminal_v = match drive {
-            Drive::Voltage(volts) => volts.clamp(-self.supply_v, self.supply_v),
-            Drive::Brake => 0.0,
-            // Open switches and no current: the diodes conduct only what drives more than the supply, and against it.
-            Drive::Coast if current_a == 0.0 && back_emf_v.abs() <= self.supply_v => return 0.0,
-            Drive::Coast if current_a == 0.0 => self.supply_v.copysign(back_emf_v),
-            Drive::Coast => -self.supply_v.copysign(current_a),
-        };
-        (terminal_v - resistance_ohm * current_a - back_emf_v) * self.inverse_inductance_1_h
+        terminal_v.map_or(0.0, |volts| {
+            (volts - resistance_ohm * current_a - back_emf_v) * self.inverse_inductance_1_h
+        })
     }
 
     /// The current at the end of a step in which it went from `before_a` to `after_a`: diodes block its reversal.
@@ -291,13 +300,17 @@ mod tests {
         let mut model = DriveModel::new(&PlantParameters::REFERENCE);
         model.supply_v = 12.0;
         // 3 V of the back-EMF drive the current against the motor.
-        let rate_a_s = model.current_rate(Drive::Coast, 0.0, 15.0, 2.1);
+        let coasting = |current_a, back_emf_v| {
+            let terminal_v = model.terminal_v(Drive::Coast, current_a, back_emf_v);
+            model.current_rate(terminal_v, current_a, back_emf_v, 2.1)
+        };
+        let rate_a_s = coasting(0.0, 15.0);
         assert!((rate_a_s + 3.0 / 0.7e-3).abs() < 1e-9, "{rate_a_s}");
         assert_eq!(model.settle_current(Drive::Coast, 0.0, -0.1), -0.1);
-        assert_eq!(model.current_rate(Drive::Coast, 0.0, 11.7, 2.1), 0.0);
+        assert_eq!(coasting(0.0, 11.7), 0.0);
         // It goes on while the back-EMF exceeds the supply, and ends at (15 - 12) / 2.1 A.
         let settled_a = -3.0 / 2.1;
-        assert!(model.current_rate(Drive::Coast, settled_a, 15.0, 2.1).abs() < 1e-9);
+        assert!(coasting(settled_a, 15.0).abs() < 1e-9);
     }
 
     #[test]
@@ -305,7 +318,7 @@ mod tests {
         let model = DriveModel::new(&PlantParameters::REFERENCE);
         assert_eq!(model.settle_current(Drive::Coast, 0.1, -0.2), 0.0);
         assert_eq!(model.settle_current(Drive::Brake, 0.1, -0.2), -0.2);
-        assert_eq!(model.current_rate(Drive::Coast, 0.0, 15.0, 2.1), 0.0);
+        assert_eq!(model.terminal_v(Drive::Coast, 0.0, 15.0), None);
     }
 
     fn with_everything() -> DriveModel {

@@ -138,11 +138,28 @@ impl Dynamics {
         self.body.first_moment(sin, cos)
     }
 
+    /// Voltages at the motors' terminals over a step that begins with this state.
+    pub fn terminals_v(
+        &self,
+        state: &State,
+        drives: &[Drive; AXES],
+        worn: &External,
+    ) -> [Option<f64>; AXES] {
+        [0, 1, 2].map(|i| {
+            let back_emf_v = self.torque_constant(i, state, worn) * state.motor_rad_s[i];
+            (self.drive).terminal_v(drives[i], state.current_a[i], back_emf_v)
+        })
+    }
+
+    fn torque_constant(&self, i: usize, state: &State, worn: &External) -> f64 {
+        self.drive.torque_constant(state.motor_rad[i]) * (1.0 - worn.lost_torque[i])
+    }
+
     /// Time derivative of the state. `step_s` is the length of the integration step that it is for.
     pub fn derivative(
         &self,
         state: &State,
-        drives: &[Drive; AXES],
+        terminals_v: &[Option<f64>; AXES],
         external: &External,
         step_s: f64,
     ) -> Result<State, OffGuide> {
@@ -156,7 +173,7 @@ impl Dynamics {
         let moment_kg_m = self.first_moment(state.pose.z);
         let mut forces = self.outer_forces(state, moment_kg_m, external);
         for i in 0..AXES {
-            let drive = (drives[i], external);
+            let drive = (terminals_v[i], external);
             self.add_drive(i, state, drive, step_s, &mut forces, &mut rate);
             self.add_guide(i, &guides[i], state, step_s, &mut forces, &mut rate);
             if let Some(at_m) = external.guide_jammed_at_m[i] {
@@ -217,7 +234,7 @@ impl Dynamics {
         &self,
         i: usize,
         state: &State,
-        (drive, external): (Drive, &External),
+        (terminal_v, external): (Option<f64>, &External),
         step_s: f64,
         forces: &mut Forces,
         rate: &mut State,
@@ -238,15 +255,14 @@ impl Dynamics {
         );
         rate.motor_bristle_rad[i] = motor_friction.bristle_rate;
         let current_a = state.current_a[i];
-        let constant_n_m_a =
-            self.drive.torque_constant(motor_rad) * (1.0 - external.lost_torque[i]);
+        let constant_n_m_a = self.torque_constant(i, state, external);
         let motor_n_m = (self.drive).motor_torque(constant_n_m_a, current_a, motor_rad);
         // What a gear that is not even passes on, it takes by the same ratio.
         let taken_n_m = transmitted_n_m - error.slope * transmitted_n_m;
         rate.motor_rad_s[i] =
             (self.drive).motor_acceleration(motor_n_m - taken_n_m - motor_friction.force);
         rate.current_a[i] = (self.drive).current_rate(
-            drive,
+            terminal_v,
             current_a,
             constant_n_m_a * motor_rad_s,
             self.resistance_ohm[i],

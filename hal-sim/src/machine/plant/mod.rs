@@ -333,11 +333,12 @@ impl Plant {
     }
 
     fn runge_kutta(&self, step_s: f64, drives: &[Drive; AXES]) -> Result<State, OffGuide> {
+        let start = &self.state;
+        let terminals_v = self.dynamics.terminals_v(start, drives, &self.external);
         let rate = |state: &State| {
             self.dynamics
-                .derivative(state, drives, &self.external, step_s)
+                .derivative(state, &terminals_v, &self.external, step_s)
         };
-        let start = &self.state;
         let first = rate(start)?;
         let second = rate(&start.plus(0.5 * step_s, &first))?;
         let third = rate(&start.plus(0.5 * step_s, &second))?;
