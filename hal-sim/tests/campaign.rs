@@ -3,8 +3,8 @@
 use firmware::fault::FaultKind;
 use firmware::parameters::Parameters;
 use hal_sim::campaign::{
-    Campaign, Commissioned, CommissionedError, End, Injection, MARGIN, Measure, NAMES, Outcome,
-    Problem, SETTINGS, Scenario, ToRest, replay, run, table,
+    Campaign, Commissioned, CommissionedError, End, Injection, Known, MARGIN, Measure, NAMES,
+    Outcome, Problem, SETTINGS, Scenario, ToRest, both, replay, run, table,
 };
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::unknown;
@@ -269,4 +269,34 @@ fn what_nobody_could_detect_is_told_from_what_nobody_has() {
     let differs = drift.differs.expect("it is told");
     assert!(differs.than_noise < 100.0, "{drift}");
     assert!(differs.than_another_day <= differs.than_noise, "{drift}");
+}
+
+/// What pushes a ring is told as a push, by its size; a motor that has lost a third of its torque is none once it turns.
+#[test]
+fn a_push_is_told_from_a_drive_that_is_not_sound() {
+    const PUSH_N_M: f64 = 3.0;
+    let with = |of: fn(&Injection) -> bool| {
+        (1..)
+            .map(Scenario::new)
+            .filter(move |scenario| of(&scenario.injection))
+            .take(4)
+    };
+    for mut pushed in with(|injection| matches!(injection, Injection::Knock(_))) {
+        pushed.injection = Injection::Knock(PUSH_N_M);
+        let expected_n = PUSH_N_M / pushed.stage.plant.track_radius_m;
+        let [outcome, _] = both(pushed);
+        let differs = outcome.differs.expect("it is told");
+        assert!(differs.than_another_day > 5.0, "{outcome}: {differs:?}");
+        assert!(differs.than_push < 1.2, "{outcome}: {differs:?}");
+        // What of it moves the platform is not counted.
+        let share = differs.push_n / expected_n;
+        assert!((0.5..1.1).contains(&share), "{differs:?}, {expected_n} N");
+    }
+    let known = with(|injection| matches!(injection, Injection::Fading(_))).map(|mut fading| {
+        fading.injection = Injection::Fading(0.33);
+        let [outcome, _] = both(fading);
+        outcome.differs.map(|differs| differs.known())
+    });
+    let known: Vec<_> = known.collect();
+    assert!(known.contains(&Some(Known::Beyond)), "{known:?}");
 }

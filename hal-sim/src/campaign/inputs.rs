@@ -10,9 +10,9 @@ use crate::machine::devices::{Encoder, Stage};
 use crate::machine::plant::AXES;
 
 /// Ticks that are taken together.
-const BLOCK: u32 = 20;
+pub(super) const BLOCK: u32 = 20;
 /// One count of an encoder, rad.
-const COUNT_RAD: f64 = core::f64::consts::TAU / COUNTS_PER_TURN as f64;
+pub(super) const COUNT_RAD: f64 = core::f64::consts::TAU / COUNTS_PER_TURN as f64;
 
 /// Encoders, currents, supply, bad frames.
 const CHANNELS: usize = 2 * AXES + 2;
@@ -46,35 +46,58 @@ pub(super) fn is_bad(encoder: &Encoder) -> bool {
     decode(&RawFrame(encoder.frame_bytes())).is_err()
 }
 
-/// Mean currents and supply, last positions and bad frames of some ticks.
+/// Sums of currents and supply, last positions and currents, and bad frames of some ticks; and what the controller has made of those before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Block {
-    ticks: u32,
-    positions: [u32; AXES],
-    currents: [i32; AXES],
-    supply: u32,
-    bad_frames: u32,
+pub(super) struct Block {
+    pub ticks: u32,
+    pub positions: [u32; AXES],
+    pub currents: [i32; AXES],
+    pub last_currents: [i16; AXES],
+    pub supply: u32,
+    pub bad_frames: u32,
+    /// Sums of the bridges' voltages up to the last tick, and ticks in which they were awake.
+    pub volts: [f64; AXES],
+    pub awake: [u32; AXES],
+}
+
+impl Block {
+    /// How far an encoder is further than in another run, counts.
+    pub fn further(&self, other: &Self, port: usize) -> f64 {
+        let half = COUNTS_PER_TURN / 2;
+        let way = self.positions[port]
+            .wrapping_sub(other.positions[port])
+            .wrapping_add(half);
+        f64::from(way % COUNTS_PER_TURN) - f64::from(half)
+    }
 }
 
 /// What was read from the injection on.
 #[derive(Clone, Debug, Default)]
-pub struct Inputs(Vec<Block>);
+pub struct Inputs {
+    blocks: Vec<Block>,
+    /// The bridges' voltages from the last tick on.
+    volts: [Option<f64>; AXES],
+}
 
 impl Inputs {
-    /// Takes a tick.
-    pub fn take(&mut self, read: &Read) {
-        if self.0.last().is_none_or(|block| block.ticks == BLOCK) {
-            self.0.push(Block::default());
+    /// Takes a tick: what it has read, and the voltages that it gives the bridges which it has awake.
+    pub fn take(&mut self, read: &Read, volts: [Option<f64>; AXES]) {
+        if (self.blocks.last()).is_none_or(|block| block.ticks == BLOCK) {
+            self.blocks.push(Block::default());
         }
-        let Some(block) = self.0.last_mut() else {
+        let before = core::mem::replace(&mut self.volts, volts);
+        let Some(block) = self.blocks.last_mut() else {
             return;
         };
         block.ticks += 1;
         block.supply += u32::from(read.supply_counts);
+        block.last_currents = read.current_counts;
         for i in 0..AXES {
             block.positions[i] = read.encoders[i].position();
             block.currents[i] += i32::from(read.current_counts[i]);
             block.bad_frames += u32::from(is_bad(&read.encoders[i]));
+            block.volts[i] += before[i].unwrap_or(0.0);
+            block.awake[i] += u32::from(before[i].is_some());
         }
     }
 
@@ -93,21 +116,24 @@ impl Inputs {
             .fold(0.0, f64::max)
     }
 
+    /// Pairs of blocks that are whole in both.
+    pub(super) fn beside<'a>(
+        &'a self,
+        other: &'a Self,
+    ) -> impl Iterator<Item = (&'a Block, &'a Block)> {
+        (self.blocks.iter().zip(&other.blocks))
+            .filter(|(one, two)| one.ticks == BLOCK && two.ticks == BLOCK)
+    }
+
     /// Largest differences of each channel, over the noise of one sample; of bad frames, over one.
     fn apart(&self, other: &Self, scenario: &Scenario) -> [f64; CHANNELS] {
         let counts = scenario.stage.analog.noise_counts.max(0.5) * f64::from(BLOCK);
         let encoder = |i: usize| (scenario.stage.encoders[i].noise_rad / COUNT_RAD).max(0.5);
-        (self.0.iter().zip(&other.0))
-            .filter(|(one, two)| one.ticks == BLOCK && two.ticks == BLOCK)
+        self.beside(other)
             .map(|(one, two)| {
                 let mut apart = [0.0; CHANNELS];
                 for i in 0..AXES {
-                    let half = COUNTS_PER_TURN / 2;
-                    let way = one.positions[i]
-                        .wrapping_sub(two.positions[i])
-                        .wrapping_add(half);
-                    let turned = f64::from((way % COUNTS_PER_TURN).abs_diff(half));
-                    apart[i] = turned / encoder(i);
+                    apart[i] = one.further(two, i).abs() / encoder(i);
                     apart[AXES + i] = f64::from(one.currents[i].abs_diff(two.currents[i])) / counts;
                 }
                 apart[2 * AXES] = f64::from(one.supply.abs_diff(two.supply)) / counts;
@@ -121,6 +147,6 @@ impl Inputs {
 
     /// Forgets it.
     pub fn clear(&mut self) {
-        self.0 = Vec::new();
+        *self = Self::default();
     }
 }

@@ -6,8 +6,8 @@
 //!
 //! What the controller makes of it is held to two things: it says in time what has happened, and the stage comes to rest within what
 //! masses, motors and the time to find it allow (`bound`). What it does not find is compared with the sound run: where its inputs
-//! differ by less than their noise (`inputs`), or by less than the sound machine's own do from one day to another (`another_day`), nobody
-//! could have found it.
+//! differ by less than their noise (`inputs`), by less than the sound machine's own do from one day to another (`another_day`), or as they would if
+//! somebody pushed it (`pushed`), nobody could have found it.
 //!
 //! Not here, since nothing that reaches the controller from outside brings them about: numbers that are none (frames and ADC counts are whole
 //! numbers, and a parameter that makes one is out of its range or does not go with the others) and setpoints out of reach, out of the
@@ -24,7 +24,7 @@
 //! | `outcome` | what came of a run |
 //! | `truth`, `rest` | what the machine really did |
 //! | `bound` | how far it may go on, by physics |
-//! | `inputs`, `another_day` | whether the controller could have known |
+//! | `inputs`, `another_day`, `pushed` | whether the controller could have known |
 //! | `verdict` | whether the controller did what it has to |
 //! | `totals` | what the runs of each fault amount to |
 //! | `table`, `remedy`, `rows` | what is printed, and written |
@@ -42,6 +42,7 @@ mod injection;
 mod inputs;
 mod motion;
 mod outcome;
+mod pushed;
 mod remedy;
 mod rest;
 mod rows;
@@ -61,7 +62,7 @@ pub use commissioned::{Commissioned, CommissionedError, SETTINGS};
 pub use effect::Effect;
 pub use expected::{Cause, Expected};
 pub use injection::{Injection, NAMES, Other};
-pub use outcome::{Differs, End, Outcome};
+pub use outcome::{Differs, End, Known, Outcome};
 pub use rest::ToRest;
 pub use rows::csv;
 pub use run::run;
@@ -75,6 +76,7 @@ use std::thread;
 
 use crate::random::Random;
 use inputs::Inputs;
+use pushed::Pushed;
 
 /// What a campaign is to be.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +130,13 @@ const MOST_DAYS: u64 = 8;
 /// The run of a seed with its fault, and without, on one of these machines, or on one that is drawn.
 #[must_use]
 pub fn replay(seed: u64, machines: &[Commissioned]) -> [Outcome; 2] {
-    let scenario = Scenario::on(seed, machines);
+    both(Scenario::on(seed, machines))
+}
+
+/// A scenario with its fault, and without.
+#[must_use]
+pub fn both(scenario: Scenario) -> [Outcome; 2] {
+    let seed = scenario.seed;
     let mut pair = [run(scenario.clone(), false), run(scenario, true)];
     if pair[0].detected().is_none() {
         let mut with_other_noise = pair[1].scenario.clone();
@@ -152,9 +160,14 @@ pub fn replay(seed: u64, machines: &[Commissioned]) -> [Outcome; 2] {
             others.push(run(then, true).inputs);
             than_another_day = than(&others);
         }
+        let pushed = |run: &Inputs| Pushed::of(run, &sound.inputs, &broken.scenario);
+        let push = pushed(&broken.inputs);
+        let than_push = push.differ(&others.iter().map(pushed).collect::<Vec<_>>());
         broken.differs = Some(Differs {
             than_noise,
             than_another_day,
+            than_push,
+            push_n: push.push_n,
         });
     }
     for outcome in &mut pair {

@@ -1,6 +1,7 @@
 //! What came of a run, and what is seen of it while it goes on.
 
 use super::inputs::Inputs;
+use super::pushed::MOST_N;
 use super::rest::ToRest;
 use super::scenario::Scenario;
 use firmware::fault::Fault;
@@ -53,6 +54,39 @@ pub struct Differs {
     pub than_noise: f64,
     /// Than that or what the same machine is on another day.
     pub than_another_day: f64,
+    /// Than either, once somebody has pushed.
+    pub than_push: f64,
+    /// The hardest of that push, N at a pivot.
+    pub push_n: f64,
+}
+
+impl Differs {
+    /// The first of four that it is.
+    #[must_use]
+    pub fn known(&self) -> Known {
+        if self.than_noise < 1.0 {
+            Known::WithinNoise
+        } else if self.than_another_day < 1.0 {
+            Known::WithinDays
+        } else if self.than_push < 1.0 && self.push_n < MOST_N {
+            Known::WithinPush
+        } else {
+            Known::Beyond
+        }
+    }
+}
+
+/// What a controller could have known of a fault by what it reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// Nothing: it differs from the sound run by less than noise.
+    WithinNoise,
+    /// Nothing: it differs by less than from one day to another.
+    WithinDays,
+    /// Nothing: it is as if somebody pushed.
+    WithinPush,
+    /// It differs by more.
+    Beyond,
 }
 
 /// State at the end of a run.

@@ -5,7 +5,6 @@ use super::injection::NAMES;
 const NOTHING: &str = "nothing: it is bridged, and shorter than what matters";
 const AT_REST: &str = "nothing while it rests: it is found when the pivot has to move";
 const SECOND_HEAD: &str = "a second head on the ring, or a sensor of the platform";
-const PLATFORM: &str = "a sensor of the platform";
 const MONITORED: &str =
     "nothing, if it is large: it is told after some seconds of fast motion (`EVT?`)";
 
@@ -49,8 +48,8 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     MONITORED,
     MONITORED,
     AT_REST,
-    PLATFORM,
-    "a sensor of the load",
+    "nothing: encoders are at the rings, and it lags or rings when it matters; `tripivot frf` at service",
+    "nothing: it is tuned for another load; `tripivot tune`",
     SECOND_HEAD,
     "nothing: at rest it is not in force or rings less than the threshold",
     "nothing: it is found after two seconds of rest, and at servo on",

@@ -7,7 +7,7 @@ use ::csv::Writer;
 use super::injection::NAMES;
 use super::outcome::Outcome;
 
-const COLUMNS: [&str; 24] = [
+const COLUMNS: [&str; 26] = [
     "seed",
     "fault",
     "pivot",
@@ -30,6 +30,8 @@ const COLUMNS: [&str; 24] = [
     "blow_bound_j",
     "inputs_differ_than_noise",
     "inputs_differ_than_another_day",
+    "inputs_differ_than_push",
+    "push_n",
     "end",
     "problem",
 ];
@@ -47,7 +49,7 @@ pub fn csv(outcomes: &[Outcome]) -> io::Result<Vec<u8>> {
     writer.into_inner().map_err(|error| error.into_error())
 }
 
-fn row(outcome: &Outcome) -> [String; 24] {
+fn row(outcome: &Outcome) -> [String; 26] {
     let scenario = &outcome.scenario;
     let fault = outcome.fault.as_ref();
     let told = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
@@ -85,6 +87,8 @@ fn row(outcome: &Outcome) -> [String; 24] {
         mm(most.blow_j),
         times(outcome.differs.map(|it| it.than_noise)),
         times(outcome.differs.map(|it| it.than_another_day)),
+        times(outcome.differs.map(|it| it.than_push)),
+        times(outcome.differs.map(|it| it.push_n)),
         outcome.end.text().to_owned(),
         (outcome.problem()).map_or_else(String::new, |problem| problem.to_string()),
     ]

@@ -12,8 +12,8 @@ const HEAD: [&str; 2] = [
     "fault                 runs det. wrong median worst   median / 99 % / worst median / 99 % / worst count  median / 99 % / worst braked/released/moving",
 ];
 const UNSEEN: [&str; 2] = [
-    "What was not detected     runs: inputs differ by less than   platform off its path, mm",
-    "                          noise / another day / by more      median / 99 % / worst      what a builder adds for it",
+    "What was not detected     runs: inputs differ by less than        platform off its path, mm",
+    "                          noise / another day / push / by more    median / 99 % / worst      what a builder adds for it",
 ];
 
 /// The table, with a row for the runs without fault; then that of what was not detected.
@@ -27,7 +27,7 @@ pub fn table(outcomes: &[Outcome]) -> String {
     text += &names(outcomes);
     text += &format!("\n{}\n{}\n", UNSEEN[0], UNSEEN[1]);
     for (index, total) in totals.iter().enumerate().take(NAMES.len()) {
-        if total.within_noise + total.within_days + total.beyond > 0 {
+        if total.within_noise + total.within_days + total.within_push + total.beyond > 0 {
             text += &unseen(total, REMEDIES[index]);
         }
     }
@@ -36,11 +36,11 @@ pub fn table(outcomes: &[Outcome]) -> String {
 
 fn unseen(total: &Total, remedy: &str) -> String {
     let runs = format!(
-        "{} / {} / {}",
-        total.within_noise, total.within_days, total.beyond
+        "{} / {} / {} / {}",
+        total.within_noise, total.within_days, total.within_push, total.beyond
     );
     let off = spread(&total.undetected_deviation_mm);
-    format!("{:<25} {runs:<34} {off:<26} {remedy}\n", total.fault)
+    format!("{:<25} {runs:<39} {off:<26} {remedy}\n", total.fault)
 }
 
 fn spread(spread: &Spread) -> String {

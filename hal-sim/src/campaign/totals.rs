@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::injection::NAMES;
-use super::outcome::{End, Outcome};
+use super::outcome::{End, Known, Outcome};
 use super::rest::ToRest;
 
 /// The runs with one fault, or those without. Units are in the names; those of no run are 0.
@@ -19,6 +19,8 @@ pub struct Total {
     pub within_noise: usize,
     /// Those in which they differ by more, but by less than the sound machine's on another day.
     pub within_days: usize,
+    /// Those in which they differ by more, as they would if somebody pushed.
+    pub within_push: usize,
     /// Those in which they differ by more, and nothing has passed a threshold.
     pub beyond: usize,
     /// Those that are not as they should be.
@@ -99,20 +101,22 @@ fn total(fault: &'static str, outcomes: &[&Outcome]) -> Total {
             .map(|outcome| outcome.reaction.blow_j)
             .filter(|&joules| joules > 0.0)
     };
-    let is_in_noise =
-        |outcome: &&&Outcome| (outcome.differs).is_some_and(|times| times.than_noise < 1.0);
-    let is_in_days =
-        |outcome: &&&Outcome| (outcome.differs).is_some_and(|times| times.than_another_day < 1.0);
+    let known =
+        |outcome: &Outcome| (outcome.differs).map_or(Known::Beyond, |differs| differs.known());
+    let within = |within: Known| {
+        undetected()
+            .filter(|outcome| known(outcome) == within)
+            .count()
+    };
     Total {
         fault,
         runs: outcomes.len(),
         detected: detected().count(),
-        within_noise: undetected().filter(is_in_noise).count(),
-        within_days: (undetected().filter(is_in_days))
-            .filter(|outcome| !is_in_noise(outcome))
-            .count(),
+        within_noise: within(Known::WithinNoise),
+        within_days: within(Known::WithinDays),
+        within_push: within(Known::WithinPush),
         beyond: (undetected().filter(|outcome| outcome.effect.is_none()))
-            .filter(|outcome| !is_in_days(outcome))
+            .filter(|outcome| known(outcome) == Known::Beyond)
             .count(),
         wrong: all().filter(|outcome| outcome.problem().is_some()).count(),
         latency_ticks: Spread::of(

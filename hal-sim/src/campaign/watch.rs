@@ -7,6 +7,7 @@ use super::effect::{Effect, Effects, Now};
 use super::expected::{Cause, MOST_EARLY, RESTART_TICKS};
 use super::inputs::{Inputs, Read};
 use super::outcome::{End, Outcome, Seen};
+use super::pushed::bridge_v;
 use super::rest::{AT_REST_RAD_S, LOOK_EVERY, Rests, ToRest};
 use super::scenario::Scenario;
 use super::truth::{Path, fastest_rad_s, place_mm};
@@ -88,7 +89,12 @@ impl<'a> Watch<'a> {
         };
         self.effects.look(&now);
         if tick >= self.scenario.at && self.outcome.fault.is_none() {
-            self.outcome.inputs.take(read);
+            let volts = [0, 1, 2].map(|bridge| {
+                let pins = host.bridges[bridge].state();
+                let current_counts = read.current_counts[bridge];
+                bridge_v(pins, self.scenario, read.supply_counts, current_counts)
+            });
+            self.outcome.inputs.take(read, volts);
         }
         // What was acknowledged before is the scenario's.
         if tick >= self.scenario.watched_from {
