@@ -92,12 +92,12 @@ impl Inputs {
         block.ticks += 1;
         block.supply += u32::from(read.supply_counts);
         block.last_currents = read.current_counts;
-        for i in 0..AXES {
+        for (i, before_v) in before.into_iter().enumerate() {
             block.positions[i] = read.encoders[i].position();
             block.currents[i] += i32::from(read.current_counts[i]);
             block.bad_frames += u32::from(is_bad(&read.encoders[i]));
-            block.volts[i] += before[i].unwrap_or(0.0);
-            block.awake[i] += u32::from(before[i].is_some());
+            block.volts[i] += before_v.unwrap_or(0.0);
+            block.awake[i] += u32::from(before_v.is_some());
         }
     }
 
