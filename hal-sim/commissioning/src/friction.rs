@@ -4,7 +4,8 @@
 //! dead time takes and s the mean share of it that counts. That is the sign of the current where this is large all the time; what friction and
 //! gears make of it at a slow rate may be less, and more at a fast one: a share that is taken for whole is then taken for a motor constant.
 //! So K is what is left of the volts for each rad/s when dead time and resistance have had their parts: a [`MotorConstant`] goes on to say what
-//! it is as the resistance becomes better known. An offset of the current's sensor is the same both ways and falls out. What is found is all that rubs between a motor and the platform where it turns: brushes, gear, ring. With the platform in
+//! it is as these become better known. A winding grows warm as it turns, and its resistance with it: at these rates it is what Coulomb's friction
+//! says, whose volts are all resistance and dead time. An offset of the current's sensor is the same both ways and falls out. What is found is all that rubs between a motor and the platform where it turns: brushes, gear, ring. With the platform in
 //! the middle the carriages stand still on their guides, and theirs is not in it; but while they do not slide they hold a torque between the
 //! rings, so that a drive carries a part of another's friction: [`mean`] of the three is right, one alone is off by that.
 
@@ -23,6 +24,9 @@ pub struct SteadyRate {
     pub dead_time_share: f64,
 }
 
+/// Least current of Coulomb's friction that tells of the resistance, A.
+const LEAST_A: f64 = 0.03;
+
 /// Motor constant of a drive as steady rates tell it: what each rad/s takes of the volts, less what the resistance takes of that.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotorConstant {
@@ -30,6 +34,10 @@ pub struct MotorConstant {
     volts: f64,
     /// Current for each rad/s of the ring, A s/rad.
     current: f64,
+    /// Volts whatever the rate: what Coulomb's friction and the dead time take.
+    coulomb_v: f64,
+    /// Current of Coulomb's friction, A.
+    coulomb_a: f64,
 }
 
 impl MotorConstant {
@@ -39,6 +47,8 @@ impl MotorConstant {
         Self {
             volts: v_s_rad,
             current: 0.0,
+            coulomb_v: 0.0,
+            coulomb_a: 0.0,
         }
     }
 
@@ -48,9 +58,14 @@ impl MotorConstant {
         self.volts - resistance_ohm * self.current
     }
 
-    /// Coefficients of the resistance and of itself in an equation, and what they make: `current R + K = volts`.
-    pub(crate) const fn equation(&self) -> ([f64; 2], f64) {
-        ([self.current, 1.0], self.volts)
+    /// Coefficients of the resistance, of itself and of the dead time's volts in an equation, and what they make. At these rates the resistance
+    /// R' was another one than it is later: `current R' + K = volts` and `coulomb_a R' + d = coulomb_v`. Without friction R' is taken for R.
+    pub(crate) fn equation(&self) -> ([f64; 3], f64) {
+        if self.coulomb_a < LEAST_A {
+            return ([self.current, 1.0, 0.0], self.volts);
+        }
+        let share = self.current / self.coulomb_a;
+        ([0.0, 1.0, -share], self.volts - share * self.coulomb_v)
     }
 }
 
@@ -145,6 +160,8 @@ pub fn friction(steady: &[SteadyRate], resistance_ohm: f64) -> Result<Friction, 
     let motor_constant = MotorConstant {
         volts: volts.y,
         current: currents.y,
+        coulomb_v: volts.x,
+        coulomb_a: currents.x,
     };
     let torque_n_m_a = motor_constant.with(resistance_ohm);
     if !(torque_n_m_a > 0.0) {

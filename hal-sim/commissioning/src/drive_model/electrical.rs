@@ -266,9 +266,9 @@ fn solve_with(
             }
         }
     }
-    let ([of_resistance, of_constant], volts) = constant.equation();
+    let ([of_resistance, of_constant, of_lost], volts) = constant.equation();
     let sure = SURE * normal[(2, 2)];
-    let row = Vector4::new(of_resistance, 0.0, of_constant, 0.0);
+    let row = Vector4::new(of_resistance, 0.0, of_constant, of_lost);
     normal += sure * row * row.transpose();
     right += sure * volts * row;
     // Each in its own size, so that the inverse is one of likes.

@@ -17,11 +17,15 @@ pub type Figures = Vec<(&'static str, f64)>;
 /// Resonances over this are beyond what any servo here reaches.
 const REACHED_HZ: f64 = 1_500.0;
 
+/// Where the windings are identified: with the platform no further than this from the middle, m.
+const MIDDLE_M: f64 = 5e-3;
+
 /// How warm the windings were in the steps that measure what they answer, K, by ring: in the mean over a step, as their currents show it (by their
-/// squares).
+/// squares). What is found of the windings is found in the middle.
 #[derive(Default)]
 pub struct Warmth {
     now: Rc<Cell<[Mean; 3]>>,
+    in_the_middle: Rc<Cell<[Mean; 3]>>,
     identified: Cell<[f64; 3]>,
     tuned: Cell<[f64; 3]>,
 }
@@ -32,28 +36,40 @@ struct Mean {
     weights: f64,
 }
 
+impl Mean {
+    /// The mean of the windings' warmth so far, with what they are and carry now.
+    fn with(means: [Self; 3], plant: &hal_sim::machine::plant::Plant) -> [Self; 3] {
+        let (warmer_k, current_a) = (plant.windings_warmer_k(), plant.currents_a());
+        std::array::from_fn(|i| {
+            let weight = current_a[i] * current_a[i];
+            Self {
+                weighted: means[i].weighted + weight * warmer_k[i],
+                weights: means[i].weights + weight,
+            }
+        })
+    }
+}
+
 impl Warmth {
     pub fn watch(&self) -> EachTick {
-        let now = Rc::clone(&self.now);
+        let (now, in_the_middle) = (Rc::clone(&self.now), Rc::clone(&self.in_the_middle));
         Box::new(move |host, _| {
             let plant = &host.stage.plant;
-            let (warmer_k, current_a) = (plant.windings_warmer_k(), plant.currents_a());
-            let mut means = now.get();
-            for (i, mean) in means.iter_mut().enumerate() {
-                let weight = current_a[i] * current_a[i];
-                mean.weighted += weight * warmer_k[i];
-                mean.weights += weight;
+            now.set(Mean::with(now.get(), plant));
+            let [x_m, y_m, _] = plant.pose();
+            if x_m.hypot(y_m) < MIDDLE_M {
+                in_the_middle.set(Mean::with(in_the_middle.get(), plant));
             }
-            now.set(means);
         })
     }
 
     /// After a step.
     pub fn note(&self, step: &str) {
-        let warmer_k = (self.now.take()).map(|mean| mean.weighted / mean.weights);
+        let warmer_k = |means: [Mean; 3]| means.map(|mean| mean.weighted / mean.weights);
+        let (all, in_the_middle) = (self.now.take(), self.in_the_middle.take());
         match step {
-            "identification" => self.identified.set(warmer_k),
-            "tuning" => self.tuned.set(warmer_k),
+            "identification" => self.identified.set(warmer_k(in_the_middle)),
+            "tuning" => self.tuned.set(warmer_k(all)),
             _ => (),
         }
     }
