@@ -21,15 +21,16 @@ const NAMES = {
   PEAK_ERROR_RAD: ["largest following error of a pivot since last looked", (value) => `${shown(value * 1e6, 2)} µrad`],
   COMMANDS: ["commands taken by the loop", String],
   REFUSED: ["of them refused", String],
+  LOOSENED: ["thresholds of supervision looser than the reference", String],
 };
 const PIVOT_NAMES = {
   LEARNT: ["has learnt: rate, torque, friction, motor constant", (value) =>
-    value.split(" ").map((part, i) => `${part} ${LEARNT_UNITS[i]}`).join(", ")],
-  INTEGRAL: ["integral", (value) => `${value} V`],
-  CURRENT: ["motor current by the model", (value) => `${value} A`],
+    value.split(" ").map((part, i) => `${shown(Number(part), 5)} ${LEARNT_UNITS[i]}`).join(", ")],
+  INTEGRAL: ["integral", (value) => `${shown(Number(value), 4)} V`],
+  CURRENT: ["motor current by the model", (value) => `${shown(Number(value), 4)} A`],
   DRIVE: ["motor constant over its parameter; offset of the current sensor; friction over its parameters", (value) => {
-    const [ratio, offset, friction] = value.split(" ");
-    return `${ratio}; ${offset} A; ${friction} N m`;
+    const [ratio, offset, friction] = value.split(" ").map(Number);
+    return `${shown(ratio, 3)}; ${shown(offset, 2)} A; ${shown(friction, 2)} N m`;
   }],
 };
 
