@@ -72,22 +72,46 @@ fn with_gains(parameters: &Parameters, gains: &Gains) -> Parameters {
 /// step `tuning` of a commissioning would find with nothing measured wrong, no doubt of its model, and no friction that holds the stage off.
 #[must_use]
 pub fn with_gains_tuned(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    sought(parameters, stage, |_| Vec::new(), &Limits::ON_MODEL)
+}
+
+/// The same for every day and for guides with friction: an Ms of 1.95 is kept with windings as warm as they are at work and as cold as they are after a
+/// rest, and some rejection is given for a faster tail, as the step `tuning` does.
+#[must_use]
+pub fn with_gains_for_every_day(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let (chain, electrical) = loop_model(stage);
+    let days = [Electrical::at_work, Electrical::rested].map(|day| electrical.each_ref().map(day));
+    let may_be = |places: &[[f64; 2]]| {
+        (days.iter())
+            .flat_map(|day| plants(&(chain.clone(), *day), places))
+            .collect()
+    };
+    sought(parameters, stage, may_be, &Limits::WITH_FRICTION)
+}
+
+fn sought(
+    parameters: &Parameters,
+    stage: &StageParameters,
+    may_be: impl Fn(&[[f64; 2]]) -> Vec<Plant>,
+    limits: &Limits,
+) -> Parameters {
     let model = loop_model(stage);
     let (chain, electrical) = &model;
     let centre = Place::centre();
+    let others = &PLACES[SEARCHED..];
     let tuned = tune(
         Sought {
             found: &plants(&model, &PLACES[..SEARCHED]),
-            may_be: &[],
-            elsewhere: &plants(&model, &PLACES[SEARCHED..]),
+            may_be: &may_be(&PLACES[..SEARCHED]),
+            elsewhere: &[plants(&model, others), may_be(others)].concat(),
         },
         electrical,
         &chain.resonances_hz(&centre),
         chain.inertia(&centre)[(0, 0)],
-        &Limits::ON_MODEL,
+        limits,
     );
     let sound = (tuned.ok()).and_then(|tuned| {
-        let plants = plants(&model, &PLACES);
+        let plants = [plants(&model, &PLACES), may_be(&PLACES)].concat();
         (tuned.gains).slowed_until_sound(&plants, MOST_MS)
     });
     match sound {

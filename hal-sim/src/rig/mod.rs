@@ -37,8 +37,8 @@ pub use conditions::{machine_name, run_conditions};
 pub use disturbances::Disturbances;
 pub(crate) use frame::{leads_turns, turn_zeros};
 pub use gains::{
-    guides_hz, loop_model, with_gains_firmer, with_gains_fitted, with_gains_tuned,
-    with_motion_fitted,
+    guides_hz, loop_model, with_gains_firmer, with_gains_fitted, with_gains_for_every_day,
+    with_gains_tuned, with_motion_fitted,
 };
 pub use told::{
     Told, with_drives_told, with_gear_errors_told, with_guides_told, with_inertia_scheduled,

@@ -7,7 +7,7 @@ use commissioning::tuning::{Gains, PLACES, Plant};
 use desk::commission::Done;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::StageParameters;
-use hal_sim::rig::{loop_model, with_gains_tuned};
+use hal_sim::rig::{loop_model, with_gains_for_every_day, with_gains_tuned};
 use std::cell::Cell;
 use std::rc::Rc;
 use tripivot::attended::EachTick;
@@ -322,7 +322,8 @@ fn plants(machine: &StageParameters, warmer_k: [f64; 3]) -> Vec<Plant> {
 }
 
 /// The controller's gains before the machine's own plants, with windings as warm as they were when the gains were sought, and the best that a servo of
-/// this structure does there: everything known, and no friction that holds the stage off. And Ms with windings that are cold, and warm.
+/// this structure does there: everything known, and no friction that holds the stage off; or the best with what the controller's have to bear besides, every
+/// day. And Ms with windings that are cold, and warm.
 pub fn gains(machine: &StageParameters, parameters: &Parameters, warmth: &Warmth) -> Figures {
     let at_worst = |parameters: &Parameters, warmer_k: [f64; 3]| {
         let plants = plants(machine, warmer_k);
@@ -335,11 +336,13 @@ pub fn gains(machine: &StageParameters, parameters: &Parameters, warmth: &Warmth
         1.0 + machine.plant.winding.resistance_per_k * tuned_k.iter().sum::<f64>() / 3.0;
     let found = at_worst(parameters, tuned_k);
     let best = at_worst(&with_gains_tuned(parameters, &as_tuned), tuned_k);
+    let every_day = at_worst(&with_gains_for_every_day(parameters, &as_tuned), tuned_k);
     let [cold, warm] = [0.0, WARMEST_K].map(|warmer_k| at_worst(parameters, [warmer_k; 3]));
     vec![
         ("ms true", found.ms),
         ("s30 true", found.rejection),
         ("s30 best", found.rejection / best.rejection),
+        ("s30 every day", found.rejection / every_day.rejection),
         ("ms cold", cold.ms),
         ("ms warm", warm.ms),
     ]
