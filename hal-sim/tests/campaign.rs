@@ -249,7 +249,7 @@ fn the_watchdog_has_to_cut_in_time() {
     assert!(matches!(never.problem(), Some(Problem::CutLate(_))));
 }
 
-/// Nothing tells an encoder that drifts slowly at rest; a load that falls off is seen in the currents.
+/// Nothing tells an encoder that drifts slowly; frames that fail are seen.
 #[test]
 fn what_nobody_could_detect_is_told_from_what_nobody_has() {
     let undetected = |of: fn(&Injection) -> bool| {
@@ -261,17 +261,17 @@ fn what_nobody_could_detect_is_told_from_what_nobody_has() {
     };
     let frames = undetected(|injection| matches!(injection, Injection::FewBadFrames(_)));
     let differs = frames.differs.expect("it is told");
-    // No day makes a line fail.
-    assert!(differs.than_another_day >= 1.0, "{frames}");
+    // No day makes a line fail, and no push.
+    assert_eq!(differs.known(), Known::Beyond, "{frames}: {differs:?}");
     let drift = undetected(
         |injection| matches!(injection, Injection::Drift(rad_s) if rad_s.abs() < 0.5e-3),
     );
     let differs = drift.differs.expect("it is told");
-    assert!(differs.than_noise < 100.0, "{drift}");
-    assert!(differs.than_another_day <= differs.than_noise, "{drift}");
+    assert_ne!(differs.known(), Known::Beyond, "{drift}: {differs:?}");
 }
 
-/// What pushes a ring is told as a push, by its size; a motor that has lost a third of its torque is none once it turns.
+/// What pushes a ring is told as a push, by its size; a motor that has lost a third of its torque, or a sensor that reads an ampere too much, is none
+/// once it turns.
 #[test]
 fn a_push_is_told_from_a_drive_that_is_not_sound() {
     const PUSH_N_M: f64 = 3.0;
@@ -281,22 +281,49 @@ fn a_push_is_told_from_a_drive_that_is_not_sound() {
             .filter(move |scenario| of(&scenario.injection))
             .take(4)
     };
-    for mut pushed in with(|injection| matches!(injection, Injection::Knock(_))) {
-        pushed.injection = Injection::Knock(PUSH_N_M);
-        let expected_n = PUSH_N_M / pushed.stage.plant.track_radius_m;
-        let [outcome, _] = both(pushed);
+    let known = |scenarios: &mut dyn Iterator<Item = Scenario>| -> Vec<_> {
+        scenarios
+            .filter_map(|scenario| both(scenario)[0].differs)
+            .collect()
+    };
+    let mut knocks = with(|injection| matches!(injection, Injection::Knock(_))).map(|scenario| {
+        let expected_n = PUSH_N_M / scenario.stage.plant.track_radius_m;
+        let injection = Injection::Knock(PUSH_N_M);
+        let [outcome, _] = both(Scenario {
+            injection,
+            ..scenario
+        });
         let differs = outcome.differs.expect("it is told");
-        assert!(differs.than_another_day > 5.0, "{outcome}: {differs:?}");
-        assert!(differs.than_push < 1.2, "{outcome}: {differs:?}");
         // What of it moves the platform is not counted.
         let share = differs.push_n / expected_n;
-        assert!((0.5..1.1).contains(&share), "{differs:?}, {expected_n} N");
-    }
-    let known = with(|injection| matches!(injection, Injection::Fading(_))).map(|mut fading| {
-        fading.injection = Injection::Fading(0.33);
-        let [outcome, _] = both(fading);
-        outcome.differs.map(|differs| differs.known())
+        assert!((0.5..1.1).contains(&share), "{outcome}: {differs:?}");
+        differs
     });
-    let known: Vec<_> = known.collect();
-    assert!(known.contains(&Some(Known::Beyond)), "{known:?}");
+    let pushes: Vec<_> = knocks.by_ref().collect();
+    // A blow rings in the transmission: that is a little beyond noise in some.
+    let within = pushes
+        .iter()
+        .filter(|push| push.known() == Known::WithinPush);
+    assert!(within.count() >= 3, "{pushes:?}");
+    assert!(pushes.iter().all(|push| push.than_push < 1.2), "{pushes:?}");
+    for (of, broken) in [
+        (
+            (|injection| matches!(injection, Injection::Fading(_))) as fn(&Injection) -> bool,
+            Injection::Fading(0.33),
+        ),
+        (
+            |injection| matches!(injection, Injection::CurrentBias(_)),
+            Injection::CurrentBias(1.0),
+        ),
+    ] {
+        let mut scenarios = with(of).map(|scenario| Scenario {
+            injection: broken,
+            ..scenario
+        });
+        // Where it is more than another day: the others rest.
+        let mut more = known(&mut scenarios);
+        more.retain(|differs| differs.than_another_day > 1.0);
+        let beyond = (more.iter()).filter(|differs| differs.known() == Known::Beyond);
+        assert!(2 * beyond.count() > more.len(), "{broken:?}: {more:?}");
+    }
 }

@@ -34,9 +34,9 @@ pub struct MotorConstant {
     volts: f64,
     /// Current for each rad/s of the ring, A s/rad.
     current: f64,
-    /// Volts whatever the rate: what Coulomb's friction and the dead time take.
+    /// Volts that go with the whole dead time whatever the rate: what Coulomb's friction and the dead time take.
     coulomb_v: f64,
-    /// Current of Coulomb's friction, A.
+    /// The same of the current, A: with the whole dead time.
     coulomb_a: f64,
 }
 

@@ -9,6 +9,8 @@ use crate::machine::devices::biss::COUNTS_PER_TURN;
 use crate::machine::devices::{Encoder, Stage};
 use crate::machine::plant::AXES;
 
+/// Ticks before the injection from which on it is taken: where drives were when it came.
+pub(super) const BEFORE: u64 = 2 * BLOCK as u64;
 /// Ticks that are taken together.
 pub(super) const BLOCK: u32 = 20;
 /// One count of an encoder, rad.
@@ -41,6 +43,11 @@ impl Read {
     }
 }
 
+/// Noise of a sample of a current or of the supply, ADC counts.
+pub(super) fn noise_counts(scenario: &Scenario) -> f64 {
+    scenario.stage.analog.noise_counts.max(0.5)
+}
+
 /// Whether the controller can read an encoder's frame.
 pub(super) fn is_bad(encoder: &Encoder) -> bool {
     decode(&RawFrame(encoder.frame_bytes())).is_err()
@@ -61,6 +68,15 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// By how much supply and bad frames differ from another run's: over the noise of one sample, and over one.
+    pub fn line_and_supply_apart(&self, other: &Self, scenario: &Scenario) -> [f64; 2] {
+        let counts = noise_counts(scenario) * f64::from(BLOCK);
+        [
+            f64::from(self.supply.abs_diff(other.supply)) / counts,
+            f64::from(self.bad_frames.abs_diff(other.bad_frames)),
+        ]
+    }
+
     /// How far an encoder is further than in another run, counts.
     pub fn further(&self, other: &Self, port: usize) -> f64 {
         let half = COUNTS_PER_TURN / 2;
@@ -71,7 +87,7 @@ impl Block {
     }
 }
 
-/// What was read from the injection on.
+/// What was read from [`BEFORE`] the injection on.
 #[derive(Clone, Debug, Default)]
 pub struct Inputs {
     blocks: Vec<Block>,
@@ -101,9 +117,10 @@ impl Inputs {
         }
     }
 
-    /// How much more it differs from the sound run's than that does from other sound runs: of the channel in which it is most.
+    /// How much more it differs from the sound run's than that does from other sound runs, the largest of each channel: of the channel in which
+    /// it is most.
     #[must_use]
-    pub fn differ(&self, sound: &Self, others: &[Self], scenario: &Scenario) -> f64 {
+    pub fn differ(&self, sound: &Self, others: &[&Self], scenario: &Scenario) -> f64 {
         let by_fault = self.apart(sound, scenario);
         let mut sound_ones = [1.0_f64; CHANNELS];
         for other in others {
@@ -127,7 +144,7 @@ impl Inputs {
 
     /// Largest differences of each channel, over the noise of one sample; of bad frames, over one.
     fn apart(&self, other: &Self, scenario: &Scenario) -> [f64; CHANNELS] {
-        let counts = scenario.stage.analog.noise_counts.max(0.5) * f64::from(BLOCK);
+        let counts = noise_counts(scenario) * f64::from(BLOCK);
         let encoder = |i: usize| (scenario.stage.encoders[i].noise_rad / COUNT_RAD).max(0.5);
         self.beside(other)
             .map(|(one, two)| {
@@ -136,8 +153,7 @@ impl Inputs {
                     apart[i] = one.further(two, i).abs() / encoder(i);
                     apart[AXES + i] = f64::from(one.currents[i].abs_diff(two.currents[i])) / counts;
                 }
-                apart[2 * AXES] = f64::from(one.supply.abs_diff(two.supply)) / counts;
-                apart[2 * AXES + 1] = f64::from(one.bad_frames.abs_diff(two.bad_frames));
+                [apart[2 * AXES], apart[2 * AXES + 1]] = one.line_and_supply_apart(two, scenario);
                 apart
             })
             .fold([0.0; CHANNELS], |most, apart: [f64; CHANNELS]| {

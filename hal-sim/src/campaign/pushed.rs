@@ -5,7 +5,7 @@
 //! What no push explains is a drive whose voltage, current and rate do not go together: `R i + L di/dt + K rate - V`, another one than in
 //! the sound run.
 
-use super::inputs::{BLOCK, Block, COUNT_RAD, Inputs};
+use super::inputs::{BLOCK, Block, COUNT_RAD, Inputs, noise_counts};
 use super::scenario::Scenario;
 use crate::machine::devices::{BridgeParameters, BridgeState};
 use crate::machine::plant::{AXES, Drive};
@@ -23,7 +23,7 @@ const KNOWN_WITHIN: f64 = 0.05;
 /// What a push leaves unexplained, and how hard it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Pushed {
-    /// Largest difference of each channel that no push makes, over the noise of one sample and what is known no better; of bad
+    /// Largest difference of each channel that no push makes, beyond what drives are known no better, over the noise of one sample; of bad
     /// frames, over one.
     left: [f64; CHANNELS],
     /// The hardest push, N at a pivot, but for what of it moves the platform besides the rings.
@@ -35,23 +35,27 @@ impl Pushed {
     pub fn of(run: &Inputs, sound: &Inputs, scenario: &Scenario) -> Self {
         let mut pushed = Self::default();
         let pairs: Vec<_> = run.beside(sound).collect();
-        for three in pairs.windows(3) {
-            for ring in 0..AXES {
-                pushed.look(three, ring, scenario);
+        for ring in 0..AXES {
+            let drive = DriveOf::new(scenario, ring);
+            for two in pairs.windows(2) {
+                pushed.left[ring] = pushed.left[ring].max(drive.left(two));
+            }
+            for three in pairs.windows(3) {
+                pushed.push_n = pushed.push_n.max(drive.push_n(three));
             }
         }
-        let counts = noise_counts(scenario) * f64::from(BLOCK);
         for (one, two) in pairs {
-            let supply = f64::from(one.supply.abs_diff(two.supply)) / counts;
-            let bad_frames = f64::from(one.bad_frames.abs_diff(two.bad_frames));
-            pushed.left[AXES] = pushed.left[AXES].max(supply);
-            pushed.left[AXES + 1] = pushed.left[AXES + 1].max(bad_frames);
+            for (left, apart) in
+                (pushed.left[AXES..].iter_mut()).zip(one.line_and_supply_apart(two, scenario))
+            {
+                *left = left.max(apart);
+            }
         }
         pushed
     }
 
-    /// How much more is left than in sound runs.
-    pub fn differ(&self, others: &[Self]) -> f64 {
+    /// How much more is left than in other sound runs, the largest of each channel: of the channel in which it is most.
+    pub fn differ(&self, others: &[&Self]) -> f64 {
         (0..CHANNELS)
             .map(|channel| {
                 let most = (others.iter()).map(|other| other.left[channel]);
@@ -59,52 +63,87 @@ impl Pushed {
             })
             .fold(0.0, f64::max)
     }
-
-    fn look(&mut self, three: &[(&Block, &Block)], ring: usize, scenario: &Scenario) {
-        let (stage, plant) = (&scenario.stage, &scenario.stage.plant);
-        let block_s = f64::from(BLOCK) * stage.period_s;
-        let bridge = stage.wiring.bridge_of(ring);
-        let port = usize::from(stage.wiring.port_of_ring[ring]);
-        let is_exchanged = stage.wiring.leads_exchanged[ring];
-        let motor_sign = if is_exchanged { -1.0 } else { 1.0 };
-        let is_reversed = stage.encoders[ring].reversed;
-        let count_rad = if is_reversed { -COUNT_RAD } else { COUNT_RAD };
-        let per_block = motor_sign / f64::from(BLOCK);
-        let last_a = |(one, two): &(&Block, &Block)| {
-            let counts = one.last_currents[bridge] - two.last_currents[bridge];
-            f64::from(counts) * CURRENT_A_PER_COUNT * motor_sign
-        };
-        let further_rad = |(one, two): &(&Block, &Block)| one.further(two, port) * count_rad;
-        let (one, two) = three[1];
-        let counts = f64::from(one.currents[bridge] - two.currents[bridge]);
-        let current_a = counts * CURRENT_A_PER_COUNT * per_block;
-        let rise_a_s = (last_a(&three[1]) - last_a(&three[0])) / block_s;
-        let [before_rad, angle_rad, after_rad] = [0, 1, 2].map(|k| further_rad(&three[k]));
-        // A block has the position of its last tick.
-        let rate_rad_s = (angle_rad - before_rad) / block_s;
-        let acceleration_rad_s2 = (after_rad - 2.0 * angle_rad + before_rad) / (block_s * block_s);
-        let constant = plant.ring_torque_constant_n_m_a();
-        let torque_n_m = constant * current_a - plant.drive_inertia_kg_m2() * acceleration_rad_s2;
-        self.push_n = self.push_n.max(torque_n_m.abs() / plant.track_radius_m);
-        if one.awake[bridge] != two.awake[bridge] {
-            self.left[ring] = f64::INFINITY;
-        } else if one.awake[bridge] == BLOCK {
-            let warmer = plant.winding.resistance_per_k * plant.winding.start_k;
-            let resistance_ohm = plant.resistance_ohm * (1.0 + warmer);
-            let further_v = (one.volts[bridge] - two.volts[bridge]) * per_block;
-            let resistive_v = resistance_ohm * current_a;
-            let induced_v = constant * rate_rad_s + plant.inductance_h * rise_a_s;
-            let left_v = resistive_v + induced_v - further_v;
-            let noise_v = resistance_ohm * CURRENT_A_PER_COUNT * noise_counts(scenario);
-            let known_v = noise_v + KNOWN_WITHIN * (resistive_v.abs() + induced_v.abs());
-            self.left[ring] = self.left[ring].max(left_v.abs() / known_v);
-        }
-    }
 }
 
-/// Noise of a sample of a current or of the supply, ADC counts.
-fn noise_counts(scenario: &Scenario) -> f64 {
-    scenario.stage.analog.noise_counts.max(0.5)
+/// A run's block and the sound one's.
+type Pair<'a> = (&'a Block, &'a Block);
+
+/// What is between the inputs and a ring.
+struct DriveOf<'a> {
+    scenario: &'a Scenario,
+    bridge: usize,
+    port: usize,
+    motor_sign: f64,
+    /// An encoder's count, the ring's way.
+    count_rad: f64,
+    block_s: f64,
+}
+
+impl<'a> DriveOf<'a> {
+    fn new(scenario: &'a Scenario, ring: usize) -> Self {
+        let stage = &scenario.stage;
+        let sign = |is_negative: bool| if is_negative { -1.0 } else { 1.0 };
+        Self {
+            scenario,
+            bridge: stage.wiring.bridge_of(ring),
+            port: usize::from(stage.wiring.port_of_ring[ring]),
+            motor_sign: sign(stage.wiring.leads_exchanged[ring]),
+            count_rad: sign(stage.encoders[ring].reversed) * COUNT_RAD,
+            block_s: f64::from(BLOCK) * stage.period_s,
+        }
+    }
+
+    fn further_rad(&self, (one, two): Pair<'_>) -> f64 {
+        one.further(two, self.port) * self.count_rad
+    }
+
+    fn further_a(&self, (one, two): Pair<'_>) -> f64 {
+        let counts = one.currents[self.bridge] - two.currents[self.bridge];
+        f64::from(counts) * CURRENT_A_PER_COUNT * self.motor_sign / f64::from(BLOCK)
+    }
+
+    fn last_further_a(&self, (one, two): Pair<'_>) -> f64 {
+        let counts = one.last_currents[self.bridge] - two.last_currents[self.bridge];
+        f64::from(counts) * CURRENT_A_PER_COUNT * self.motor_sign
+    }
+
+    /// What no push makes of the second of two blocks, over noise.
+    fn left(&self, two: &[Pair<'_>]) -> f64 {
+        let (before, now) = (two[0], two[1]);
+        let plant = &self.scenario.stage.plant;
+        let warmer = plant.winding.resistance_per_k * plant.winding.start_k;
+        let resistance_ohm = plant.resistance_ohm * (1.0 + warmer);
+        let resistive_v = resistance_ohm * self.further_a(now);
+        let [awake, awake_too] = [now.0, now.1].map(|block| block.awake[self.bridge]);
+        let left_v = if awake != awake_too {
+            // One drives and the other does not.
+            plant.supply_v
+        } else if awake == 0 {
+            // Nothing flows, whatever is read.
+            resistive_v.abs()
+        } else {
+            let rate_rad_s = (self.further_rad(now) - self.further_rad(before)) / self.block_s;
+            let rise_a_s = (self.last_further_a(now) - self.last_further_a(before)) / self.block_s;
+            let induced_v =
+                plant.ring_torque_constant_n_m_a() * rate_rad_s + plant.inductance_h * rise_a_s;
+            let further_v = (now.0.volts[self.bridge] - now.1.volts[self.bridge]) * self.motor_sign
+                / f64::from(BLOCK);
+            let known_v = KNOWN_WITHIN * (resistive_v.abs() + induced_v.abs());
+            (resistive_v + induced_v - further_v).abs() - known_v
+        };
+        left_v / (resistance_ohm * CURRENT_A_PER_COUNT * noise_counts(self.scenario))
+    }
+
+    /// The push of the second of three blocks, N.
+    fn push_n(&self, three: &[Pair<'_>]) -> f64 {
+        let plant = &self.scenario.stage.plant;
+        // A block has the position of its last tick.
+        let [before, now, after] = [0, 1, 2].map(|k| self.further_rad(three[k]));
+        let acceleration_rad_s2 = (after - 2.0 * now + before) / (self.block_s * self.block_s);
+        let torque_n_m = plant.ring_torque_constant_n_m_a() * self.further_a(three[1])
+            - plant.drive_inertia_kg_m2() * acceleration_rad_s2;
+        torque_n_m.abs() / plant.track_radius_m
+    }
 }
 
 /// The voltage that a bridge gives its motor by its pins, by the supply and the current that are read, V; none while it sleeps.

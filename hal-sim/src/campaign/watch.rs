@@ -5,7 +5,7 @@ use firmware::mode::Mode;
 use super::bound::{AFTERMATH, Moment};
 use super::effect::{Effect, Effects, Now};
 use super::expected::{Cause, MOST_EARLY, RESTART_TICKS};
-use super::inputs::{Inputs, Read};
+use super::inputs::{BEFORE, Inputs, Read};
 use super::outcome::{End, Outcome, Seen};
 use super::pushed::bridge_v;
 use super::rest::{AT_REST_RAD_S, LOOK_EVERY, Rests, ToRest};
@@ -88,7 +88,7 @@ impl<'a> Watch<'a> {
             heard: self.heard,
         };
         self.effects.look(&now);
-        if tick >= self.scenario.at && self.outcome.fault.is_none() {
+        if tick + BEFORE >= self.scenario.at && self.outcome.fault.is_none() {
             let volts = [0, 1, 2].map(|bridge| {
                 let pins = host.bridges[bridge].state();
                 let current_counts = read.current_counts[bridge];

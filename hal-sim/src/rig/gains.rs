@@ -83,7 +83,7 @@ pub fn with_gains_for_every_day(parameters: &Parameters, stage: &StageParameters
     let days = [Electrical::at_work, Electrical::rested].map(|day| electrical.each_ref().map(day));
     let may_be = |places: &[[f64; 2]]| {
         (days.iter())
-            .flat_map(|day| plants(&(chain.clone(), *day), places))
+            .flat_map(|day| plants(&(chain, *day), places))
             .collect()
     };
     sought(parameters, stage, may_be, &Limits::WITH_FRICTION)

@@ -99,7 +99,8 @@ pub struct Equations {
 /// What is known of a drive besides.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Besides<'a> {
-    /// Its motor constant, from steady rates: then it is what these say with the resistance that is found.
+    /// Its motor constant, from steady rates: then it is what these say with the dead time that is found; with the resistance, where friction takes
+    /// next to no current.
     pub motor_constant: MotorConstant,
     /// Inertia of the motor, transmission and motor constant, as far as they are known; without, the motor is taken to turn as its ring does.
     pub mechanics: Option<(&'a Chain, f64)>,

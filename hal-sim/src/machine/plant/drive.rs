@@ -122,7 +122,7 @@ impl DriveModel {
     }
 
     /// Voltage at the motor's terminals over a step that begins with this current and back-EMF, V; none while all switches are open and
-    /// nothing flows. It is the same over all of the step: a current that dies in the diodes does not reverse in it.
+    /// nothing flows. It is the same over all of the step: a current that dies in the diodes has not reversed at its end.
     #[must_use]
     pub fn terminal_v(&self, drive: Drive, current_a: f64, back_emf_v: f64) -> Option<f64> {
         match drive {
