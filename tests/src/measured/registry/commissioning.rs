@@ -10,9 +10,8 @@ pub(super) const SECTIONS: &[Section] = &[
         about: "Machines drawn from seeds, brought up by `tripivot commission` with a simulated person beside them; their plugs are in as they \
                 belong, so that the campaign after it may have them. What was found against what is true, by the meters of the machine, and what their \
                 loops are with the gains that were found, as measured and on the true plant, whose gears have no play and whose windings are as warm as they \
-                were when the gains were sought; the best that gains can do there knows that plant, on that day and with no friction; that of every day also \
-                bears windings 8 K colder and 60 K warmer and gives some rejection for a faster tail, as the step `tuning` does, which knows the plant only so \
-                far. Limits are those that are aimed at; at the end how long each step took. Begun again, it goes on where it was left.",
+                were when the gains were sought; the best that gains can do there knows that plant. Limits are those that are aimed at; at the end how long each \
+                step took. Begun again, it goes on where it was left.",
         command: "export SETTINGS=$PWD/target/commissioned RESULTS=$PWD/target/commissioned-$(git rev-parse --short HEAD).jsonl; \
                   bench='cargo bench -p tripivot --bench commission'; $bench --no-run; for part in 1-24 25-48; do SEEDS=$part $bench >/dev/null & done; \
                   wait; TABLE=1 SEEDS=1-48 $bench",
