@@ -194,8 +194,8 @@ pub(super) struct Faults {
     ///
     /// Fields: runs, seed (both null with --only) and wall_s; faults, for each of them and at last for the runs without: fault, runs,
     /// detected, within_noise, within_days, within_push and beyond (not detected: inputs differ from the sound run's by less than noise, by
-    /// less than that machine's own do on another day, as they would if somebody pushed, or by more), wrong, latency_ticks, way_mm, turn_deg, blow_j, deviation_mm and
-    /// undetected_deviation_mm (median, most, worst each: most is what 99 of 100 stay under), blows, ended_braked, ended_released,
+    /// less than that machine's own do on another day, as they would if somebody pushed, or by more), wrong, latency_ticks, way_mm,
+    /// turn_deg, blow_j, deviation_mm and undetected_deviation_mm (median, most, worst each: most is what 99 of 100 stay under), blows, ended_braked, ended_released,
     /// ended_moving;
     /// missed, the runs with a fault that are not as they should be, and alarms, the runs without; told, those runs one by
     /// one, with --only both: seed, is_control, fault, tick, latched, latched_tick, latency_ticks, problem, text.
