@@ -22,10 +22,10 @@ const REACH_MM: f64 = 78.0;
 const TURN_DEG: f64 = 200.0;
 const SPEED_MM_S: [f64; 2] = [50.0, 200.0];
 /// Words of the events.
-const WORDS: [&str; 3] = ["motor constant", "current sensor", "friction"];
+const WORDS: [&str; 4] = ["motor constant", "current sensor", "friction", "knocks"];
 
 /// What changes, and the word of its event.
-const CASES: [(&str, Option<Injection>, Option<usize>); 20] = [
+const CASES: [(&str, Option<Injection>, Option<usize>); 25] = [
     ("nothing", None, None),
     ("motor 5 % weaker", Some(Injection::Fading(0.05)), Some(0)),
     ("motor 10 % weaker", Some(Injection::Fading(0.1)), Some(0)),
@@ -86,6 +86,31 @@ const CASES: [(&str, Option<Injection>, Option<usize>); 20] = [
         "5 N m more friction",
         Some(Injection::Friction(5.0)),
         Some(2),
+    ),
+    (
+        "coupling loose by 0.02 mrad",
+        Some(Injection::LooseCoupling(20e-6)),
+        Some(3),
+    ),
+    (
+        "coupling loose by 0.05 mrad",
+        Some(Injection::LooseCoupling(50e-6)),
+        Some(3),
+    ),
+    (
+        "coupling loose by 0.1 mrad",
+        Some(Injection::LooseCoupling(0.1e-3)),
+        Some(3),
+    ),
+    (
+        "coupling loose by 0.3 mrad",
+        Some(Injection::LooseCoupling(0.3e-3)),
+        Some(3),
+    ),
+    (
+        "coupling loose by 1 mrad",
+        Some(Injection::LooseCoupling(1e-3)),
+        Some(3),
     ),
     ("load lost", Some(Injection::LoadLost), None),
     (

@@ -1,5 +1,6 @@
 //! What is told of drives that are no more what their parameters say, and that nothing is told of those that are.
 
+use hal_sim::machine::devices::EncoderFault;
 use hal_sim::machine::plant::External;
 use hal_sim::rig::run::{RunOptions, stage_parameters};
 use tests::Bench;
@@ -16,6 +17,8 @@ const ROUND: [&str; 4] = [
 /// Rounds for one finding, and those after which a change has been told.
 const FOR_ONE: usize = 2;
 const FOR_ALL: usize = 8;
+/// Bad frames in a row that may be bridged, in a test: more than are as it comes.
+const BRIDGED: u32 = 10;
 
 /// A machine that is as its parameters say, holding.
 fn known() -> Bench {
@@ -129,6 +132,65 @@ fn more_friction_is_told() {
         "{told:?}"
     );
     assert_eq!(bench.fault(), None);
+}
+
+#[test]
+fn a_loose_coupling_is_told_by_its_knocks() {
+    let mut bench = known();
+    go_round(&mut bench, FOR_ALL);
+    assert_eq!(told(&mut bench), [""; 0]);
+    with_external(&mut bench, |external| external.loose_rad[PIVOT] = 0.05e-3);
+    let go_on = |bench: &mut Bench| {
+        // With that play it does not settle.
+        for line in ROUND {
+            bench.say(&format!("{line}\n"));
+            bench.run(12_000);
+        }
+    };
+    go_on(&mut bench);
+    let events = told(&mut bench);
+    assert_eq!(events.len(), 1, "{events:?}");
+    assert!(events[0].starts_with("5 knocks in 0."), "{events:?}");
+    assert!(
+        events[0].ends_with(" rad/s^2, pivot 2: a loose coupling, or something that strikes it"),
+        "{events:?}"
+    );
+    // Once in ten seconds.
+    go_on(&mut bench);
+    assert_eq!(told(&mut bench), events);
+    for _ in 0..4 {
+        go_on(&mut bench);
+    }
+    let are_knocks = |event: &&String| event.contains("knocks");
+    assert_eq!(told(&mut bench).iter().filter(are_knocks).count(), 2);
+    assert_eq!(bench.fault(), None);
+    // It survives a reset.
+    bench.reset("the watchdog: the control loop or the command side stood still");
+    bench.run(20);
+    assert_eq!(told(&mut bench)[..1], events);
+}
+
+/// A reading that comes back from where bridged frames have led is no knock, however often.
+#[test]
+fn bridged_frames_are_no_knocks() {
+    let mut bench = known();
+    bench.set(&[(0x5450_0502, f64::from(BRIDGED))]);
+    for line in ROUND.iter().cycle().take(8) {
+        bench.send(&format!("{line}\n"));
+        for _ in 0..20 {
+            bench.rig.front.stage.encoders[PIVOT].set_fault(EncoderFault::StuckHigh);
+            bench.run(BRIDGED);
+            bench.rig.front.stage.encoders[PIVOT].set_fault(None);
+            bench.run(200);
+        }
+        bench.settle();
+    }
+    let events = told(&mut bench);
+    let is_bridged = |event: &String| event.contains("bad encoder frames bridged");
+    assert!(
+        !events.is_empty() && events.iter().all(is_bridged),
+        "{events:?}"
+    );
 }
 
 /// A motor that does not drive tells nothing: what was learnt in slow motion, and a hand that turns the platform with the servo off.

@@ -83,7 +83,7 @@ impl Interpreter {
             events: EventLog::new(),
             statistics: Statistics::default(),
             servo_reports: ServoReports::default(),
-            drive_watches: DriveWatches::default(),
+            drive_watches: DriveWatches::new(parameters),
             heartbeat: Heartbeat::default(),
             connections: Connections::default(),
             jogs: Jogs::default(),

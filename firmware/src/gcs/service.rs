@@ -64,7 +64,7 @@ impl Interpreter {
         if let Some(snapshot) = queues.snapshot() {
             self.events.update(&snapshot);
             self.statistics.update(&snapshot);
-            self.watch_drive(&snapshot);
+            self.watch_drives(&snapshot);
             if let Some(retained_memory) = queues.retained_memory {
                 retained_memory.keep_motor_heat(&snapshot.motor_heat);
             }

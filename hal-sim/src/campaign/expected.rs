@@ -31,6 +31,13 @@ pub struct Expected {
     pub told: Option<&'static str>,
 }
 
+impl Expected {
+    /// Whether it may be told by an event, with none of its causes at a tick of its own.
+    pub fn is_gathered(&self) -> bool {
+        self.told.is_some() && self.causes.iter().all(|cause| cause.kind.is_some())
+    }
+}
+
 /// Ticks until the command side, which has its turn every few, has told of something.
 const COMMAND_SIDE_TICKS: u64 = 20;
 
@@ -422,6 +429,7 @@ impl Injection {
             Self::Warning => Some("encoder warns"),
             Self::Bursts(..) => Some("bad encoder frames bridged"),
             Self::Slip(_) => Some("encoder stepped"),
+            Self::LooseCoupling(_) => Some("knocks"),
             Self::HostSilent => Some("no host heard"),
             Self::LoopStands => Some("start by the watchdog"),
             Self::Crash => Some("start by a panic"),

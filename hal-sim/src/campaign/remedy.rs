@@ -48,7 +48,7 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     MONITORED,
     MONITORED,
     AT_REST,
-    "a sensor of the platform; `tripivot frf` at service",
+    "nothing, if it moves: it is told once it has knocked five times (`EVT?`); `tripivot frf` at service",
     "holding-down of the load; `tripivot tune` measures it",
     SECOND_HEAD,
     "nothing: at rest it is not in force or rings less than the threshold",

@@ -59,8 +59,9 @@ fn names(outcomes: &[Outcome]) -> String {
         let mut told: BTreeMap<&str, u32> = BTreeMap::new();
         let of_it = (outcomes.iter())
             .filter(|outcome| !outcome.is_control && outcome.scenario.injection.index() == index);
-        for fault in of_it.filter_map(|outcome| outcome.fault) {
-            *told.entry(fault.kind.text()).or_default() += 1;
+        for outcome in of_it.filter(|outcome| outcome.detected().is_some()) {
+            let name = (outcome.fault).map_or("an event", |fault| fault.kind.text());
+            *told.entry(name).or_default() += 1;
         }
         if told.len() > 1 {
             let each: Vec<_> = (told.iter())

@@ -99,7 +99,14 @@ impl Outcome {
     #[must_use]
     pub fn latency_ticks(&self) -> Option<u64> {
         let tick = self.detected()?;
-        Some((self.effect).map_or(0, |effect| tick.saturating_sub(effect)))
+        // What is told by what it does over and over passes no threshold at one instant.
+        let is_gathered = self.fault.is_none() && self.scenario.injection.expected().is_gathered();
+        let since = if is_gathered {
+            Some(self.scenario.at)
+        } else {
+            self.effect
+        };
+        Some(since.map_or(0, |since| tick.saturating_sub(since)))
     }
 
     /// The tick in which it was found: that of the fault, or of the event where it is none.
@@ -141,13 +148,19 @@ impl Outcome {
 
     fn wrong_report(&self) -> Option<Problem> {
         let expected = self.scenario.injection.expected();
+        // An event is no fault, where one is due.
+        let in_time = if expected.is_gathered() {
+            self.fault.map(|fault| fault.tick)
+        } else {
+            self.detected()
+        };
         let late = || {
-            let (tick, deadline) = (self.detected()?, self.deadline?);
+            let (tick, deadline) = (in_time?, self.deadline?);
             (tick > deadline).then(|| Problem::Late(tick - deadline))
         };
         let Some(fault) = self.fault else {
-            return match (self.deadline, self.detected(), self.told) {
-                (_, None, Some(_)) => Some(Problem::FalseAlarm),
+            return match (self.deadline, in_time, self.told) {
+                (_, _, Some(_)) if self.is_control => Some(Problem::FalseAlarm),
                 (Some(_), None, _) => Some(Problem::Undetected),
                 _ => late(),
             };

@@ -1,11 +1,13 @@
 //! Thresholds, events, lines of `LST?`.
 
 use super::drive::{DriveCondition, DriveWatch, find};
+use super::knocks::KnockWatch;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::WriteFailed;
 use crate::gcs::reply_writer::ReplyWriter;
 use crate::mode::Mode;
+use crate::parameters::Parameters;
 use crate::queues::Snapshot;
 
 /// What of a drive may be no more what its parameters say.
@@ -50,6 +52,8 @@ impl DriveQuantity {
 /// The drives, what was found of them last, and what has been told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::gcs) struct DriveWatches {
+    rate_hz: f32,
+    knocks: KnockWatch,
     drives: [DriveWatch; 3],
     found: [Option<DriveCondition>; 3],
     told: [[Told; DriveQuantity::ALL.len()]; 3],
@@ -76,14 +80,32 @@ impl Told {
     }
 }
 
+impl DriveWatches {
+    /// For a stage of these parameters: nothing has been seen.
+    pub fn new(parameters: &Parameters) -> Self {
+        Self {
+            rate_hz: parameters.limits.rate_hz as f32,
+            ..Self::default()
+        }
+    }
+}
+
 impl Interpreter {
     /// Other parameters from now on: what was seen, and told, is not held against them.
     pub(in crate::gcs) fn restart_drive_watches(&mut self) {
-        self.drive_watches = DriveWatches::default();
+        self.drive_watches = DriveWatches::new(&self.parameters);
     }
 
-    /// Looks at the drive that a snapshot tells of.
-    pub(in crate::gcs) fn watch_drive(&mut self, snapshot: &Snapshot) {
+    /// Looks at a snapshot: at all pivots for knocks, and at the drive that it tells of.
+    pub(in crate::gcs) fn watch_drives(&mut self, snapshot: &Snapshot) {
+        let rate_hz = self.drive_watches.rate_hz;
+        if let Some(knocks) = self.drive_watches.knocks.look(snapshot, rate_hz) {
+            self.events.add(snapshot.tick, Event::Knocks(knocks));
+        }
+        self.watch_drive(snapshot, rate_hz);
+    }
+
+    fn watch_drive(&mut self, snapshot: &Snapshot, rate_hz: f32) {
         let (servo, watches) = (&snapshot.servo, &mut self.drive_watches);
         let pivot = servo.pivot.min(2);
         let watch = &mut watches.drives[pivot];
@@ -92,7 +114,6 @@ impl Interpreter {
             *watch = DriveWatch::default();
             return;
         }
-        let rate_hz = self.parameters.limits.rate_hz as f32;
         let Some(ways) = watch.look(snapshot.tick, snapshot.pivots[pivot], servo, rate_hz) else {
             return;
         };

@@ -4,7 +4,7 @@ use super::board_notice::BoardNotice;
 use super::crash::{CRASH_FILE_BYTES, Crash, CrashCause};
 use super::event::{Event, START_CAUSES};
 use crate::fault::{FAULT_DESCRIPTIONS, Fault};
-use crate::gcs::condition::DriveQuantity;
+use crate::gcs::condition::{DriveQuantity, Knocks};
 
 /// Stands for no pivot, and for a cause that has no number.
 const NONE: u8 = 0xFF;
@@ -79,6 +79,16 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
             let what = *quantity as u8;
             (32, [*pivot, what], [value.to_bits(), u32::from(*is_off), 0])
         }
+        Event::Knocks(Knocks {
+            pivot,
+            count,
+            seconds,
+            hardest_rad_s2,
+        }) => {
+            let count = u32::from(*count);
+            let words = [count, seconds.to_bits(), hardest_rad_s2.to_bits()];
+            (33, [*pivot, 0], words)
+        }
         Event::EncoderStepped(pivot, step_rad) => (31, [*pivot, 0], [step_rad.to_bits(), 0, 0]),
         Event::CalibratedTemperature(is_off, over_k) => {
             (29, [u8::from(*is_off), 0], [over_k.to_bits(), 0, 0])
@@ -142,6 +152,12 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         22 => Event::RecoveryGivenUp,
         28 => Event::FramesBridged(first, a as u16),
         31 => Event::EncoderStepped(first, f32::from_bits(a)),
+        33 => Event::Knocks(Knocks {
+            pivot: first,
+            count: a as u16,
+            seconds: f32::from_bits(b),
+            hardest_rad_s2: f32::from_bits(c),
+        }),
         29 => Event::CalibratedTemperature(first != 0, f32::from_bits(a)),
         32 => {
             let quantity = *DriveQuantity::ALL.get(usize::from(second))?;

@@ -3,7 +3,7 @@
 use super::board_notice::BoardNotice;
 use super::crash::Crash;
 use crate::fault::Fault;
-use crate::gcs::condition::DriveQuantity;
+use crate::gcs::condition::{DriveQuantity, Knocks};
 use core::fmt;
 
 /// What may start a controller. Unasked: the watchdog, the program, the supply, the clock. Asked for: power, the reset pin, `RBT`. The
@@ -52,6 +52,8 @@ pub(in crate::gcs) enum Event {
     EncoderStepped(u8, f32),
     /// Something of the drive of a pivot, counted from 0, is no more what the parameters say, or is again; and what it is now.
     Drive(u8, DriveQuantity, bool, f32),
+    /// Something knocks at a pivot.
+    Knocks(Knocks),
     /// Settings were written to flash.
     Stored,
     /// They could not be: the error's number.
@@ -145,6 +147,16 @@ impl fmt::Display for Event {
                 }?;
                 write!(f, ", pivot {}", pivot + 1)
             }
+            Self::Knocks(Knocks {
+                pivot,
+                count,
+                seconds,
+                hardest_rad_s2,
+            }) => write!(
+                f,
+                "{count} knocks in {seconds:.2} s, up to {hardest_rad_s2:.0} rad/s^2, pivot {}: a loose coupling, or something that strikes it",
+                pivot + 1
+            ),
             Self::HostSilent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
             Self::Stored => f.write_str("settings kept"),
             Self::StoreFailed(number) => {

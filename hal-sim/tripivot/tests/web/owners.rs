@@ -162,6 +162,8 @@ fn a_jog_of_a_page_ends_without_it() {
                 assert!(Instant::now() < end, "{line} is not taken");
             }
         }
+        // Another connection does not wait for what this one has asked for.
+        looker.until("FRF? X", 1.0);
         asleep.reply("JOG W 20");
         let start = Instant::now();
         looker.until("JOG? W", 0.0);
