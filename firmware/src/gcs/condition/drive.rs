@@ -38,7 +38,8 @@ pub(super) struct DriveCondition {
 /// What has been seen of a drive since the last finding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DriveWatch {
-    last: Option<(u64, Angle)>,
+    /// The lower half of the tick of the last look, and where it was then, 2^-32 turns.
+    last: Option<(u32, u32)>,
     /// How long it has turned one way without a pause, s; negative the other way.
     turned_s: f32,
     forward: OneWay,
@@ -70,15 +71,18 @@ impl DriveWatch {
         servo: &ServoReport,
         rate_hz: f32,
     ) -> Option<[OneWay; 2]> {
-        let (last_tick, last_angle) = self.last.replace((tick, angle))?;
+        let tick = tick as u32;
+        let fraction = angle.fraction();
+        let (last_tick, last_fraction) = self.last.replace((tick, fraction))?;
         // No f64 and no division of 64 bits: snapshots come every fourth tick.
-        let seconds = tick.wrapping_sub(last_tick) as u32 as f32 / rate_hz;
+        let seconds = tick.wrapping_sub(last_tick) as f32 / rate_hz;
         if seconds > LONGEST_LOOK_S {
             *self = Self::default();
             return None;
         }
         // In so short a time it is less than half a turn.
-        let way_rad = (angle - last_angle).units() as i32 as f32 * (1.0 / UNITS_PER_RAD) as f32;
+        let way = fraction.wrapping_sub(last_fraction) as i32;
+        let way_rad = way as f32 * (1.0 / UNITS_PER_RAD) as f32;
         let turns = way_rad.abs() > LEAST_RATE_RAD_S * seconds;
         if !turns || self.turned_s * way_rad < 0.0 {
             // Only at the end of a way: in its middle, what has accelerated it would be taken for friction.

@@ -14,7 +14,7 @@ use crate::queues::Snapshot;
 /// others pass it once or twice, as the servo goes on.
 const KNOCK_RAD_S2: f32 = 250.0;
 /// Longest time from one snapshot to the next, ticks: over a longer one a knock is no jump any more.
-const LONGEST_STEP_TICKS: u32 = 12;
+const LONGEST_STEP_TICKS: u8 = 12;
 /// A knock rings on for so long, ticks: 5 ms.
 const RINGS_TICKS: u32 = 100;
 /// So many knocks within so many ticks, 10 s, are told, once in that time.
@@ -39,7 +39,7 @@ pub(in crate::gcs) struct Knocks {
 pub(super) struct KnockWatch {
     /// The lower half of the last snapshot's tick, and how many after the one before it came; 0 without the servo.
     tick: u32,
-    step_ticks: u32,
+    step_ticks: u8,
     errors: [i32; 3],
     /// How far these have gone since the snapshot before.
     steps: [i32; 3],
@@ -54,7 +54,7 @@ pub(super) struct KnockWatch {
 struct Knock {
     tick: u32,
     /// Where it is hardest: the platform carries it on to the other pivots.
-    pivot: usize,
+    pivot: u8,
     hardest_rad_s2: f32,
     /// It is none: a reading has come back to where the pivot is.
     is_bridged: bool,
@@ -75,9 +75,9 @@ impl KnockWatch {
         self.see(snapshot, tick, rate_hz);
         let over = |knock: &mut Knock| tick.wrapping_sub(knock.tick) >= RINGS_TICKS;
         let knock = self.ringing.take_if(over).filter(|it| !it.is_bridged)?;
-        let knocks = self.pivots.get_mut(knock.pivot)?.take(&knock)?;
+        let knocks = self.pivots[usize::from(knock.pivot)].take(&knock)?;
         Some(Knocks {
-            pivot: knock.pivot as u8,
+            pivot: knock.pivot,
             count: knocks.count,
             seconds: knock.tick.wrapping_sub(knocks.first_tick) as f32 / rate_hz,
             hardest_rad_s2: knocks.hardest_rad_s2,
@@ -89,21 +89,25 @@ impl KnockWatch {
         let ticks = tick.wrapping_sub(replace(&mut self.tick, tick));
         let mut pivot = 0;
         let mut hardest_units = 0;
-        for (i, error) in snapshot.pivot_errors.iter().enumerate() {
-            let step = error.wrapping_sub(replace(&mut self.errors[i], *error));
-            let before = replace(&mut self.steps[i], step);
-            let change = step.wrapping_sub(before).unsigned_abs();
+        let lasts = self.errors.iter_mut().zip(&mut self.steps);
+        for (i, (error, (last, last_step))) in (0..).zip(snapshot.pivot_errors.iter().zip(lasts)) {
+            let step = error.wrapping_sub(replace(last, *error));
+            let change = step.wrapping_sub(replace(last_step, step)).unsigned_abs();
             if change > hardest_units {
                 (pivot, hardest_units) = (i, change);
             }
         }
         let is_driven = matches!(snapshot.mode, Mode::Holding | Mode::Moving);
-        let step_ticks = if is_driven { ticks } else { 0 };
+        let step_ticks = if is_driven {
+            u8::try_from(ticks).unwrap_or(0)
+        } else {
+            0
+        };
         let before = replace(&mut self.step_ticks, step_ticks);
         if step_ticks != before || !(1..=LONGEST_STEP_TICKS).contains(&step_ticks) {
             return;
         }
-        let step_s = step_ticks as f32 / rate_hz;
+        let step_s = f32::from(step_ticks) / rate_hz;
         let units_per_rad_s2 = step_s * step_s * UNITS_PER_RAD as f32;
         if hardest_units as f32 <= KNOCK_RAD_S2 * units_per_rad_s2 {
             return;
