@@ -69,6 +69,7 @@ const TAIL: &str = "
 | no host heard for longer than `HBT` or parameter 0x54500510 allow: one of the connections that have sent `HBT`, or, for the parameter, none at all | the stop of `STP`, error 10, an event: a stage that stands under its servo is safer than one whose motors are off |
 | the command queue is full | the command is refused whole with error 1005, nothing moves; the loop never waits |
 | a restart by a watchdog, a panic, a processor fault, a dip of the supply or a crystal that stops | the outputs are cut first, whatever hangs: the tick feeds a window watchdog that cuts them half a millisecond after the last one. Found at the next start: `FLT?` tells it, and `EVT?` the place in the program with it; the motors are off and the reference is gone |
+| a bit of the RAM that does not hold both its values, found at each start before anything uses it | the chip does not go on: its pins are as the reset has left them, which is no motor driven; the lamps stay as they are and nobody answers. A debugger finds it at `tripivot_ram_fault`, with the word's address in r0 |
 | the board at its start: brown-out level, boot bank, silicon, flash size, an image without a checksum | an event (`EVT?`) |
 ";
 

@@ -5,7 +5,9 @@
 //! is linked to run there (`control-loop.x`). At its own address the core would fetch over the system bus, a word every other cycle.
 //! A reset gives address 0 back to the flash.
 //!
-//! Before anything else of the program: `memcpy` is there too.
+//! Before anything else of the program, once the RAM has been tried (`ram_test`): `memcpy` is there too.
+
+use crate::ram_test::{CCM_BASE, CCM_END, SRAM_BASE, SRAM_END};
 
 /// `RCC_APB2ENR`, and the clock of the system configuration in it.
 const RCC_APB2ENR: u32 = 0x4002_3844;
@@ -15,7 +17,7 @@ const SYSCFG_MEMRMP: u32 = 0x4001_3800;
 const MEM_MODE: u32 = 0b111;
 const SRAM1: u32 = 0b011;
 /// SRAM1 at its own address.
-pub const SRAM1_BASE: u32 = 0x2000_0000;
+pub const SRAM1_BASE: u32 = SRAM_BASE;
 
 core::arch::global_asm!(
     ".section .text.loop_memory, \"ax\"",
@@ -23,6 +25,18 @@ core::arch::global_asm!(
     ".type __pre_init, %function",
     ".thumb_func",
     "__pre_init:",
+    // The test has the link register and keeps this one, in which the start-up code has nothing.
+    "mov  r4, lr",
+    "movw r0, #:lower16:{sram_base}",
+    "movt r0, #:upper16:{sram_base}",
+    "movw r1, #:lower16:{sram_end}",
+    "movt r1, #:upper16:{sram_end}",
+    "bl   tripivot_ram_test",
+    "movw r0, #:lower16:{ccm_base}",
+    "movt r0, #:upper16:{ccm_base}",
+    "movw r1, #:lower16:{ccm_end}",
+    "movt r1, #:upper16:{ccm_end}",
+    "bl   tripivot_ram_test",
     "movw r0, #:lower16:{apb2enr}",
     "movt r0, #:upper16:{apb2enr}",
     "ldr  r1, [r0]",
@@ -54,8 +68,12 @@ core::arch::global_asm!(
     // What is fetched from now on comes from there.
     "dsb",
     "isb",
-    "bx   lr",
+    "bx   r4",
     ".size __pre_init, . - __pre_init",
+    sram_base = const SRAM_BASE,
+    sram_end = const SRAM_END,
+    ccm_base = const CCM_BASE,
+    ccm_end = const CCM_END,
     apb2enr = const RCC_APB2ENR,
     syscfgen = const SYSCFGEN,
     sram1_base = const SRAM1_BASE,

@@ -24,6 +24,7 @@ mod oscillator;
 mod panic;
 mod program_watch;
 mod pwm;
+mod ram_test;
 mod reset_cause;
 mod restart;
 mod retained_memory;

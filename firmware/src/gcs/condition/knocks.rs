@@ -37,6 +37,8 @@ pub(in crate::gcs) struct Knocks {
 /// What was seen of all pivots.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct KnockWatch {
+    /// What an error changes by in a knock, over the square of the ticks from one snapshot to the next, 2^-32 turns.
+    knock_units: u32,
     /// The lower half of the last snapshot's tick, and how many after the one before it came; 0 without the servo.
     tick: u32,
     step_ticks: u8,
@@ -69,10 +71,19 @@ struct PivotKnocks {
 }
 
 impl KnockWatch {
+    /// For a loop of this rate: nothing has been seen.
+    pub fn new(rate_hz: f32) -> Self {
+        let per_tick_squared = KNOCK_RAD_S2 * UNITS_PER_RAD as f32 / (rate_hz * rate_hz);
+        Self {
+            knock_units: per_tick_squared as u32,
+            ..Self::default()
+        }
+    }
+
     /// Looks at a snapshot; knocks that have to be told.
     pub fn look(&mut self, snapshot: &Snapshot, rate_hz: f32) -> Option<Knocks> {
-        let tick = snapshot.tick as u32;
-        self.see(snapshot, tick, rate_hz);
+        self.see(snapshot);
+        let tick = self.tick;
         let over = |knock: &mut Knock| tick.wrapping_sub(knock.tick) >= RINGS_TICKS;
         let knock = self.ringing.take_if(over).filter(|it| !it.is_bridged)?;
         let knocks = self.pivots[usize::from(knock.pivot)].take(&knock)?;
@@ -85,7 +96,8 @@ impl KnockWatch {
     }
 
     /// A knock begins, or rings on.
-    fn see(&mut self, snapshot: &Snapshot, tick: u32, rate_hz: f32) {
+    fn see(&mut self, snapshot: &Snapshot) {
+        let tick = snapshot.tick as u32;
         let ticks = tick.wrapping_sub(replace(&mut self.tick, tick));
         let mut pivot = 0;
         let mut hardest_units = 0;
@@ -107,16 +119,21 @@ impl KnockWatch {
         if step_ticks != before || !(1..=LONGEST_STEP_TICKS).contains(&step_ticks) {
             return;
         }
-        let step_s = f32::from(step_ticks) / rate_hz;
-        let units_per_rad_s2 = step_s * step_s * UNITS_PER_RAD as f32;
-        if hardest_units as f32 <= KNOCK_RAD_S2 * units_per_rad_s2 {
-            return;
+        let ticks_squared = u32::from(step_ticks) * u32::from(step_ticks);
+        if hardest_units > self.knock_units * ticks_squared {
+            let hardest_rad_s2 =
+                KNOCK_RAD_S2 * hardest_units as f32 / (self.knock_units * ticks_squared) as f32;
+            self.ring(snapshot, pivot, hardest_rad_s2);
         }
+    }
+
+    /// At a pivot, at least.
+    #[cold]
+    fn ring(&mut self, snapshot: &Snapshot, pivot: u8, hardest_rad_s2: f32) {
         let bridged = snapshot.bridged_frames;
         let is_bridged = bridged != replace(&mut self.bridged, bridged);
-        let hardest_rad_s2 = hardest_units as f32 / units_per_rad_s2;
         let knock = self.ringing.get_or_insert(Knock {
-            tick,
+            tick: self.tick,
             pivot,
             hardest_rad_s2,
             is_bridged,
@@ -160,7 +177,7 @@ mod tests {
     impl Stage {
         fn holding() -> Self {
             Self {
-                watch: KnockWatch::default(),
+                watch: KnockWatch::new(RATE_HZ),
                 snapshot: Snapshot {
                     mode: Mode::Holding,
                     ..Snapshot::default()

@@ -83,8 +83,10 @@ impl Told {
 impl DriveWatches {
     /// For a stage of these parameters: nothing has been seen.
     pub fn new(parameters: &Parameters) -> Self {
+        let rate_hz = parameters.limits.rate_hz as f32;
         Self {
-            rate_hz: parameters.limits.rate_hz as f32,
+            rate_hz,
+            knocks: KnockWatch::new(rate_hz),
             ..Self::default()
         }
     }

@@ -232,6 +232,10 @@ impl EventLog {
         let tick = snapshot.tick;
         let now = tick as u32;
         let told = &mut self.encoders[pivot];
+        if (told.bridged, told.slipped) == (snapshot.bridged_frames[pivot], snapshot.slipped[pivot])
+        {
+            return;
+        }
         let may_tell = told.tick == 0 || now.wrapping_sub(told.tick) >= AGAIN_TICKS;
         let bridged = snapshot.bridged_frames[pivot].wrapping_sub(told.bridged);
         let slipped = snapshot.slipped[pivot].wrapping_sub(told.slipped);
