@@ -124,6 +124,32 @@ fn a_fault_that_is_not_reported_rightly_is_a_problem() {
 }
 
 #[test]
+fn an_event_is_no_answer_where_a_fault_is_due_and_an_alarm_where_nothing_is_wrong() {
+    let loose = (1..)
+        .map(Scenario::new)
+        .find(|scenario| matches!(scenario.injection, Injection::LooseCoupling(_)))
+        .expect("one of so many");
+    let sound = run(loose, true);
+    assert_eq!(sound.problem(), None, "{sound}");
+    let told = Some(sound.scenario.at + 1);
+    let alarm = Outcome {
+        told,
+        ..sound.clone()
+    };
+    assert_eq!(alarm.problem(), Some(Problem::FalseAlarm));
+    let knocks = Outcome {
+        is_control: false,
+        ..alarm
+    };
+    assert_eq!(knocks.problem(), None);
+    let due = Outcome {
+        deadline: Some(sound.scenario.at + 10),
+        ..knocks
+    };
+    assert_eq!(due.problem(), Some(Problem::Undetected));
+}
+
+#[test]
 fn a_fault_that_comes_before_its_reason_is_a_problem() {
     let good = noticed(|injection| *injection == Injection::Jam);
     assert!(good.is_founded, "{good}");

@@ -1,5 +1,5 @@
 //! What gains that are sought for identified machines do on the machines as they are, as a table: `cargo bench -p commissioning --bench gains`;
-//! `-- FIRST LAST` takes these unknown machines. The search alone: no loop is measured, and what gains are judged on has neither friction nor play.
+//! `-- 9 31` takes these unknown machines. The search alone: no loop is measured, and what gains are judged on has neither friction nor play.
 
 #[path = "../tests/machine/mod.rs"]
 mod machine;
@@ -13,7 +13,7 @@ use machine::truth::{as_warm, identify, spread};
 use machine::{PLAN, TIMING, unknown};
 use parallel::{cores, of_all};
 
-const MACHINES: [u64; 2] = [1, 24];
+const MACHINES: std::ops::RangeInclusive<u64> = 1..=24;
 
 /// Gains that are sound at all places, on plants as they are found and as they may be, and their worst margins there.
 fn sought(
@@ -82,8 +82,11 @@ fn main() {
     let numbers: Vec<u64> = std::env::args()
         .filter_map(|word| word.parse().ok())
         .collect();
-    let [first, last] = <[u64; 2]>::try_from(numbers).unwrap_or(MACHINES);
-    let seeds: Vec<u64> = (first..=last).collect();
+    let seeds = if numbers.is_empty() {
+        MACHINES.collect()
+    } else {
+        numbers
+    };
     let rows = of_all(&seeds, cores(), |seed| row(*seed));
     println!(
         "| machine | S(30 Hz) as told | on the true machine | over the best there | Ms there |"
